@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "meshgrain/context.h"
+#include "meshgrain/mesh.h"
+
+namespace meshgrain {
+
+struct ReadOptions {
+  /// Merge vertices whose positions are exactly equal. STL, which has no shared vertices, is always
+  /// welded.
+  bool weld = false;
+  /// Keep the scalar vertex property of this name (PLY) as Mesh::values; an error if it is absent.
+  std::string value_name;
+};
+
+/// Reads OBJ, PLY (ASCII and both byte orders; `tristrips` and `range_grid` too), OFF (text and
+/// binary), STL (both kinds), ALN, XYZ or PTS; the kind is told by the content where that is
+/// possible, else by the name's extension. A file with vertices but no faces is a point cloud.
+/// Throws Error, naming the file and the line or byte, if the file is missing, of an unknown kind or
+/// cut off, or if an index is out of range or a number is not finite.
+Mesh read_mesh(const std::filesystem::path& path, const ReadOptions& options = {},
+               const Context& context = Context());
+
+/// Writes OBJ, PLY (binary, little endian), OFF or STL (binary), chosen by the extension. The file
+/// appears whole or not at all: it is written beside its place and renamed. STL splits polygons
+/// into triangles. Throws Error if the extension is unknown or the place cannot be written.
+void write_mesh(const std::filesystem::path& path, const Mesh& mesh);
+
+/// Throws the error that write_mesh would throw for an unknown extension or a missing or read-only
+/// folder, so that a long computation need not end in one.
+void check_writable(const std::filesystem::path& path);
+
+}  // namespace meshgrain

@@ -1,0 +1,11 @@
+#pragma once
+
+/// Everything of Meshgrain's public API.
+
+#include "meshgrain/context.h"
+#include "meshgrain/error.h"
+#include "meshgrain/io.h"
+#include "meshgrain/mesh.h"
+#include "meshgrain/picture.h"
+#include "meshgrain/shapes.h"
+#include "meshgrain/statistics.h"

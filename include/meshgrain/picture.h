@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "meshgrain/mesh.h"
+
+namespace meshgrain {
+
+struct PictureOptions {
+  int width = 1200;
+  int height = 1200;
+  Eigen::Vector3f view{1.0f, 0.6f, 1.4f};  ///< From the surface's centre towards the eye.
+  Eigen::Vector3f up{0.0f, 1.0f, 0.0f};
+  float zoom = 1;                          ///< 1 shows the whole surface.
+  bool edges = true;
+  bool irregular = true;                   ///< Dots on irregular vertices, tints on odd faces.
+};
+
+struct Image {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;  ///< width x height x 3, row after row from the top.
+};
+
+/// Draws a mesh with its edges and irregular interior vertices (red: fewer neighbours than regular,
+/// blue: more), or the points of a cloud, by a small software rasteriser (orthographic, z-buffered,
+/// antialiased).
+Image draw_picture(const Mesh& mesh, const PictureOptions& options = {});
+
+/// Throws Error if the file cannot be written.
+void write_png(const std::filesystem::path& path, const Image& image);
+
+}  // namespace meshgrain
