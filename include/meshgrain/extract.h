@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "meshgrain/context.h"
+#include "meshgrain/fields.h"
+
+namespace meshgrain {
+
+struct ExtractOptions {
+  /// How the integer jumps across edges are found: that of the position field's solver.
+  PositionEnergy energy = PositionEnergy::extrinsic;
+  /// Edges of the graph that lie on the border of the surface: where the output is open. Without any,
+  /// gaps that the walk leaves are closed.
+  std::vector<std::array<Index, 2>> border;
+  /// Gaps with more edges than this stay open even away from the border: a point cloud may have holes
+  /// that only it knows of.
+  std::size_t largest_filled_gap = 64;
+};
+
+struct Extraction {
+  Mesh mesh;
+  std::vector<Index> nodes;  ///< For each vertex, the node of its cluster that lies nearest to it.
+};
+
+/// Reads a mesh off the integer jumps of a position field (section 3.8): quads with some triangles
+/// and pentagons for a 4-PoSy, triangles for a 6-PoSy. The fields may come from anywhere; only their
+/// integers relative to the graph matter.
+Extraction extract_mesh(const Graph& graph, const OrientationField& orientation,
+                        const PositionField& position, const ExtractOptions& options = {},
+                        const Context& context = Context());
+
+}  // namespace meshgrain

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include "meshgrain/graph.h"
+
+namespace meshgrain {
+
+/// Coarser and coarser graphs by merging pairs of neighbours (section 3.5). Level 0 is the input;
+/// the last has one node a connected component.
+struct Hierarchy {
+  std::vector<Graph> levels;
+  /// parents[l][i]: the node of level l + 1 that node i of level l was merged into.
+  std::vector<std::vector<Index>> parents;
+};
+
+/// Pairs are taken by the paper's score <n_i, n_j> min(A_i / A_j, A_j / A_i), the best first, by
+/// rounds of mutual proposals: the same pairs as one global sort would give, without the sort.
+Hierarchy build_hierarchy(Graph graph, const Context& context = Context());
+
+}  // namespace meshgrain

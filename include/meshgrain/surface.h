@@ -1,0 +1,26 @@
+#pragma once
+
+#include "meshgrain/context.h"
+#include "meshgrain/mesh.h"
+
+namespace meshgrain {
+
+/// Area of all faces (fan triangles), in squared input units. Zero for a point cloud.
+double surface_area(const Mesh& mesh);
+
+struct EdgeLengths {
+  double mean = 0, max = 0;
+};
+EdgeLengths edge_lengths(const Mesh& mesh);
+
+/// Splits the edges of a triangle mesh that are longer than `max_length` at their midpoints, again
+/// and again until none is left: the surface stays exactly as it is (section 3.8 asks for an input
+/// denser than the output). Values and normals are interpolated. Non-manifold edges are ordinary.
+void subdivide(Mesh& triangles, double max_length, const Context& context = Context());
+
+/// Puts vertices into the order of a Hilbert curve, and faces into the order of their first vertex,
+/// so that what is near on the surface is near in memory. Returns, for each new vertex, its index in
+/// the mesh that was passed.
+std::vector<Index> sort_along_curve(Mesh& mesh, const Context& context = Context());
+
+}  // namespace meshgrain

@@ -1,0 +1,73 @@
+#include "meshgrain/extract.h"
+
+#include <algorithm>
+
+#include "extract/clusters.h"
+#include "extract/face_repair.h"
+#include "extract/polygon_map.h"
+
+namespace meshgrain {
+namespace {
+
+/// Whether each of `edges` is among `chosen` (both sorted).
+std::vector<std::uint8_t> mark(const std::vector<std::array<Index, 2>>& edges,
+                               const std::vector<std::array<Index, 2>>& chosen) {
+  std::vector<std::uint8_t> result(edges.size());
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    result[e] = std::binary_search(chosen.begin(), chosen.end(), edges[e]);
+  }
+  return result;
+}
+
+/// The closed orbits as faces, and only the vertices that they use.
+Extraction collect_faces(const PolygonMap& map, const FaceRepair& repair,
+                         const Clusters& clusters) {
+  Extraction result;
+  std::vector<Index> vertex(clusters.positions.size(), no_index);
+  std::vector<std::uint8_t> seen(map.halfedges(), 0);
+  std::vector<Index> orbit, face;
+  for (Index h = 0; h < map.halfedges(); ++h) {
+    if (map.removed(h) || seen[h]) continue;
+    map.orbit(h, orbit);
+    for (const Index g : orbit) seen[g] = 1;
+    if (repair.is_hole(h) || orbit.size() < 3) continue;
+    face.clear();
+    for (const Index g : orbit) face.push_back(map.origin(g));
+    std::sort(face.begin(), face.end());
+    if (std::adjacent_find(face.begin(), face.end()) != face.end()) continue;
+    face.clear();
+    for (const Index g : orbit) {
+      Index& v = vertex[map.origin(g)];
+      if (v == no_index) {
+        v = static_cast<Index>(result.mesh.positions.size());
+        result.mesh.positions.push_back(clusters.positions[map.origin(g)]);
+        result.mesh.normals.push_back(clusters.normals[map.origin(g)]);
+        result.nodes.push_back(clusters.nodes[map.origin(g)]);
+      }
+      face.push_back(v);
+    }
+    result.mesh.faces.push_back(face);
+  }
+  return result;
+}
+
+}  // namespace
+
+Extraction extract_mesh(const Graph& graph, const OrientationField& orientation,
+                        const PositionField& position, const ExtractOptions& options,
+                        const Context& context) {
+  const Clusters clusters = collapse_clusters(graph, orientation, position, options, context);
+  PolygonMap map(clusters.positions, clusters.normals, clusters.edges);
+  FaceRepair repair(map, clusters.positions, clusters.normals, position.posy);
+  repair.remove_dangling();
+  repair.find_holes(mark(clusters.edges, clusters.border), options.largest_filled_gap);
+  repair.split_large();
+  if (position.posy == 4) {
+    repair.merge_triangles();
+    repair.remove_doublets();
+  }
+  context.progress("extraction", 1);
+  return collect_faces(map, repair, clusters);
+}
+
+}  // namespace meshgrain

@@ -1,0 +1,187 @@
+#include "extract/face_repair.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace meshgrain {
+
+using std::numbers::pi;
+
+FaceRepair::FaceRepair(PolygonMap& map, std::span<const Vec3> positions,
+                       std::span<const Vec3> normals, int posy)
+    : map_(map), positions_(positions), normals_(normals), posy_(posy) {
+  hole_.assign(map.halfedges(), 0);
+}
+
+/// The angle at v from one neighbour counterclockwise to another, in the tangent plane: 0 to 2 pi.
+double FaceRepair::angle(Index v, Index from, Index to) const {
+  const Vec3& n = normals_[v];
+  const Vec3 a = positions_[from] - positions_[v], b = positions_[to] - positions_[v];
+  const double angle = std::atan2(n.dot(a.cross(b)), a.dot(b) - n.dot(a) * n.dot(b));
+  return angle < 0 ? angle + 2 * pi : angle;
+}
+
+/// The inner angle of h's face at the origin of h.
+double FaceRepair::corner_angle(Index h) const {
+  return angle(map_.origin(h), map_.target(h), map_.origin(map_.prev(h)));
+}
+
+bool FaceRepair::same_orbit(Index a, Index b) const {
+  Index h = a;
+  do {
+    if (h == b) return true;
+    h = map_.next(h);
+  } while (h != a);
+  return false;
+}
+
+void FaceRepair::remove_dangling() {
+  std::vector<Index> label;
+  std::vector<Index> orbit;
+  for (bool again = true; again;) {
+    again = false;
+    label.assign(map_.halfedges(), no_index);
+    for (Index h = 0; h < map_.halfedges(); ++h) {
+      if (map_.removed(h) || label[h] != no_index) continue;
+      map_.orbit(h, orbit);
+      for (const Index g : orbit) label[g] = h;
+    }
+    for (Index h = 0; h < map_.halfedges(); h += 2) {
+      // A removal splits an orbit, and labels of what is left may be too old: look again.
+      if (map_.removed(h) || label[h] != label[h + 1] || !same_orbit(h, h + 1)) continue;
+      map_.remove_edge(h);
+      again = true;
+    }
+  }
+}
+
+void FaceRepair::find_holes(const std::vector<std::uint8_t>& on_border, std::size_t largest_gap) {
+  std::vector<std::uint8_t> seen(map_.halfedges(), 0);
+  std::vector<Index> orbit;
+  for (Index h = 0; h < map_.halfedges(); ++h) {
+    if (map_.removed(h) || seen[h]) continue;
+    map_.orbit(h, orbit);
+    std::size_t along = 0;
+    double turning = 0;
+    for (const Index g : orbit) {
+      seen[g] = 1;
+      along += on_border[g / 2];
+      turning += pi - corner_angle(g);
+    }
+    // Around a face one turns once to the left; around the outside of an open sheet, to the right.
+    const bool outside = turning < 0;
+    const bool bordered = 10 * along > 6 * orbit.size() && (outside || orbit.size() > 4);
+    if (bordered || orbit.size() > largest_gap) {
+      for (const Index g : orbit) hole_[g] = 1;
+    }
+  }
+}
+
+void FaceRepair::remove_edge(Index h) {
+  const bool hole = hole_[h] || hole_[PolygonMap::twin(h)];
+  const Index rest = map_.next(h) != PolygonMap::twin(h) ? map_.next(h) : map_.prev(h);
+  map_.remove_edge(h);
+  if (!hole || map_.removed(rest)) return;
+  map_.orbit(rest, scratch_);
+  for (const Index g : scratch_) hole_[g] = 1;
+}
+
+void FaceRepair::remove_doublets() {
+  for (bool again = true; again;) {
+    again = false;
+    for (Index v = 0; v < positions_.size(); ++v) {
+      const Index h = map_.leaving(v);
+      if (h == no_index || map_.valence(v) != 2) continue;
+      const Index g = map_.around(h);
+      if (hole_[h] || hole_[g]) continue;
+      const std::size_t merged = map_.degree(h) + map_.degree(g) - 4;
+      if (merged < 3) continue;
+      map_.remove_edge(h);
+      map_.remove_edge(g);
+      again = true;
+    }
+  }
+}
+
+void FaceRepair::merge_triangles() {
+  struct Candidate {
+    double cost;
+    Index h;
+    bool operator<(const Candidate& o) const { return cost < o.cost || (cost == o.cost && h < o.h); }
+  };
+  std::vector<Candidate> candidates;
+  for (Index h = 0; h < map_.halfedges(); h += 2) {
+    const Index t = PolygonMap::twin(h);
+    if (map_.removed(h) || hole_[h] || hole_[t]) continue;
+    if (map_.degree(h) != 3 || map_.degree(t) != 3) continue;
+    const Index quad[4] = {map_.origin(h), map_.origin(map_.prev(t)), map_.origin(t),
+                           map_.origin(map_.prev(h))};
+    if (quad[1] == quad[3]) continue;
+    const double cost = polygon_cost(quad);
+    if (cost < 1e9) candidates.push_back({cost, h});
+  }
+  std::sort(candidates.begin(), candidates.end());
+  for (const Candidate& c : candidates) {
+    if (map_.degree(c.h) == 3 && map_.degree(PolygonMap::twin(c.h)) == 3) map_.remove_edge(c.h);
+  }
+}
+
+/// Squared deviation of a polygon's angles from the regular one; huge if it is not convex.
+double FaceRepair::polygon_cost(std::span<const Index> corners) const {
+  const std::size_t n = corners.size();
+  const double regular = pi * static_cast<double>(n - 2) / static_cast<double>(n);
+  double cost = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double a = angle(corners[k], corners[(k + 1) % n], corners[(k + n - 1) % n]);
+    if (a > 0.95 * pi) cost += 1e9;
+    cost += (a - regular) * (a - regular);
+  }
+  return cost;
+}
+
+bool FaceRepair::split_once(Index h) {
+  std::vector<Index> orbit;
+  map_.orbit(h, orbit);
+  const std::size_t n = orbit.size();
+  const std::size_t piece = posy_ == 4 ? 4 : 3;  // corners of what a chord cuts off
+  if (n <= piece || (posy_ == 4 && n == 5)) return false;
+  double best_cost = std::numeric_limits<double>::infinity();
+  std::size_t best = n;
+  std::vector<Index> corners(piece), rest;
+  for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t c = 0; c < piece; ++c) corners[c] = map_.origin(orbit[(k + c) % n]);
+    bool simple = true;
+    for (std::size_t a = 0; a < piece; ++a) {
+      for (std::size_t b = 0; b < a; ++b) simple = simple && corners[a] != corners[b];
+    }
+    if (!simple || map_.adjacent(corners.front(), corners.back())) continue;
+    double cost = polygon_cost(corners);
+    // Where this is the last cut, what is left counts as well.
+    if (n == 2 * piece - 2) {
+      rest.clear();
+      for (std::size_t c = piece - 1; c <= n; ++c) rest.push_back(map_.origin(orbit[(k + c) % n]));
+      cost += polygon_cost(rest);
+    }
+    if (cost < best_cost) {
+      best_cost = cost;
+      best = k;
+    }
+  }
+  if (best == n) return false;
+  map_.add_edge(orbit[best], orbit[(best + piece - 1) % n]);
+  hole_.resize(map_.halfedges(), 0);
+  return true;
+}
+
+void FaceRepair::split_large() {
+  // Added halfedges lie at the end, so that what a split leaves is seen again.
+  for (Index h = 0; h < map_.halfedges(); ++h) {
+    if (map_.removed(h) || hole_[h]) continue;
+    while (split_once(h)) {
+    }
+  }
+}
+
+}  // namespace meshgrain

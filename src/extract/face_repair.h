@@ -1,0 +1,51 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "extract/polygon_map.h"
+
+namespace meshgrain {
+
+/// Turns the orbits of a map into the faces that a position field of symmetry `posy` asks for:
+/// triangles for 6, mostly quads for 4. `holes` afterwards says, for each halfedge, whether its orbit
+/// is open.
+class FaceRepair {
+ public:
+  FaceRepair(PolygonMap& map, std::span<const Vec3> positions, std::span<const Vec3> normals,
+             int posy);
+
+  /// Removes edges that have the same orbit on both sides: dangling ones and bridges.
+  void remove_dangling();
+
+  /// Marks orbits as open: those that run along the border (`on_border`: one flag an edge), and what
+  /// is longer than `largest_gap`.
+  void find_holes(const std::vector<std::uint8_t>& on_border, std::size_t largest_gap);
+
+  /// Removes interior vertices with two edges, which no regular mesh has.
+  void remove_doublets();
+
+  /// Removes the edges between pairs of triangles that make a good quad, best first.
+  void merge_triangles();
+
+  /// Splits faces with more corners than the symmetry allows along their best chords.
+  void split_large();
+
+  bool is_hole(Index h) const { return hole_[h]; }
+
+ private:
+  double corner_angle(Index h) const;
+  double angle(Index v, Index from, Index to) const;
+  double polygon_cost(std::span<const Index> corners) const;
+  bool same_orbit(Index a, Index b) const;
+  void remove_edge(Index h);
+  bool split_once(Index h);
+
+  PolygonMap& map_;
+  std::span<const Vec3> positions_, normals_;
+  int posy_;
+  std::vector<std::uint8_t> hole_;  // one flag a halfedge
+  std::vector<Index> scratch_;
+};
+
+}  // namespace meshgrain

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "meshgrain/mesh.h"
+
+namespace meshgrain {
+
+/// A combinatorial map: a graph with a cyclic order of the edges around each vertex, as halfedges.
+/// The walks along `next` ("orbits") are its faces, so that whatever the edges are, every edge has a
+/// face on either side. Halfedges h and h ^ 1 are the two sides of an edge.
+class PolygonMap {
+ public:
+  /// The edges around a vertex are ordered by angle in its tangent plane.
+  PolygonMap(std::span<const Vec3> positions, std::span<const Vec3> normals,
+             std::span<const std::array<Index, 2>> edges);
+
+  std::size_t halfedges() const { return origin_.size(); }
+  bool removed(Index h) const { return origin_[h] == no_index; }
+  static Index twin(Index h) { return h ^ 1; }
+  Index next(Index h) const { return next_[h]; }
+  Index prev(Index h) const { return prev_[h]; }
+  Index origin(Index h) const { return origin_[h]; }
+  Index target(Index h) const { return origin_[h ^ 1]; }
+
+  /// The next halfedge with the same origin, clockwise around it.
+  Index around(Index h) const { return next_[twin(h)]; }
+  /// Some halfedge that leaves the vertex, or no_index.
+  Index leaving(Index vertex) const { return leaving_[vertex]; }
+  std::size_t valence(Index vertex) const;
+  bool adjacent(Index a, Index b) const;
+
+  std::size_t degree(Index h) const;
+  /// The halfedges of h's orbit, from h on.
+  void orbit(Index h, std::vector<Index>& out) const;
+
+  /// Takes an edge away: the orbits on its two sides become one (or, if they are the same, two).
+  void remove_edge(Index h);
+  /// Adds an edge from the origin of `a` to the origin of `b`, two halfedges of one orbit. Returns
+  /// the halfedge from the origin of `a`, in whose orbit `b` lies.
+  Index add_edge(Index a, Index b);
+
+ private:
+  std::vector<Index> origin_, next_, prev_;
+  std::vector<Index> leaving_;
+};
+
+}  // namespace meshgrain

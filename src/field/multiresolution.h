@@ -1,0 +1,262 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include "field/schedule.h"
+#include "meshgrain/fields.h"
+#include "util/hash.h"
+
+namespace meshgrain {
+
+/// One node's part of a field on one level: everything that the solver below needs to know of an
+/// energy and a symmetry. A kernel is a cheap view of the level's data.
+template <typename K>
+concept FieldKernel = requires(const K& kernel, Index i, std::size_t entry, std::uint64_t hash,
+                               const typename K::Value* field, const typename K::Value& value,
+                               const typename K::Integers* integers) {
+  /// A random value, from a hash of the node.
+  { kernel.random(i, hash) } -> std::same_as<typename K::Value>;
+  /// The local Gauss-Seidel step: the value of node i that fits its neighbours best.
+  { kernel.relax(i, field) } -> std::same_as<typename K::Value>;
+  /// The paper's energy of the edges that leave node i.
+  { kernel.energy(i, field) } -> std::same_as<double>;
+  /// The value of a coarser node, for its child i.
+  { kernel.prolong(i, value) } -> std::same_as<typename K::Value>;
+  /// The value of coarse node i, from its two children with their shares.
+  { kernel.merge(i, value, value, 0.5f) } -> std::same_as<typename K::Value>;
+  /// The same with integers held: those that match node i with the neighbour of an entry.
+  { kernel.match(i, entry, field) } -> std::same_as<typename K::Integers>;
+  { kernel.relax_frozen(i, field, integers) } -> std::same_as<typename K::Value>;
+  { kernel.energy_frozen(i, field, integers) } -> std::same_as<double>;
+};
+
+/// The coarse-to-fine iteration that orientation and position fields share (sections 3.4, 3.5).
+template <FieldKernel Kernel>
+class Multiresolution {
+ public:
+  using Value = typename Kernel::Value;
+  using Integers = typename Kernel::Integers;
+
+  /// `kernels[l]` belongs to `hierarchy.levels[l]`. Both must outlive this.
+  Multiresolution(const Hierarchy& hierarchy, const SolverOptions& options,
+                  const std::vector<Kernel>& kernels, std::vector<EnergyRecord>& energies)
+      : hierarchy_(hierarchy), options_(options), kernels_(kernels), energies_(energies) {
+    level_ = options.multiresolution ? coarsest() : 0;
+    const Kernel& kernel = kernels_[static_cast<std::size_t>(level_)];
+    values_.resize(graph().size());
+    for (Index i = 0; i < values_.size(); ++i) {
+      values_[i] = kernel.random(i, hash64(options.seed, i));
+    }
+    enter_level();
+  }
+
+  bool step(const Context& context) {
+    context.check();
+    if (!integers_.empty()) {
+      sweep_frozen(context);
+      return true;
+    }
+    if (done()) return false;
+    sweep(context);
+    ++sweep_;
+    if (options_.record_energy) energies_.push_back({level_, sweep_, energy(context)});
+    if (sweep_ >= options_.sweeps && level_ > 0) descend(context);
+    return true;
+  }
+
+  int level() const { return level_; }
+  bool done() const { return level_ == 0 && sweep_ >= options_.sweeps; }
+
+  double progress() const {
+    if (done()) return 1;
+    // A level is twice the work of the next coarser one.
+    const auto n = static_cast<double>(hierarchy_.levels[0].size());
+    const auto m = static_cast<double>(graph().size());
+    return std::min(1.0, m / n * (1.0 + sweep_ / std::max(1.0, 1.0 * options_.sweeps)) / 2);
+  }
+
+  const std::vector<Value>& values() const { return values_; }
+
+  /// Takes values of the finest level, as if all sweeps were done.
+  void set_values(std::vector<Value> values) {
+    values_ = std::move(values);
+    integers_.clear();
+    level_ = 0;
+    sweep_ = options_.sweeps;
+    enter_level();
+  }
+
+  void restart(std::span<const Index> region) {
+    integers_.clear();
+    const int top = options_.multiresolution ? coarsest() : 0;
+    held_.assign(static_cast<std::size_t>(top) + 1, {});
+    active_.assign(static_cast<std::size_t>(top) + 1, {});
+    held_[0] = values_;
+    active_[0].assign(hierarchy_.levels[0].size(), 0);
+    for (const Index i : region) active_[0][i] = 1;
+    for (int l = 0; l < top; ++l) restrict_level(static_cast<std::size_t>(l));
+    level_ = top;
+    sweep_ = 0;
+    values_ = held_.back();
+    enter_level();
+  }
+
+  void freeze_integers(const Context& context) {
+    const Graph& finest = hierarchy_.levels[0];
+    integers_.resize(finest.neighbors.size());
+    context.for_ranges(finest.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        for (std::size_t e = finest.offsets[i]; e < finest.offsets[i + 1]; ++e) {
+          integers_[e] = kernels_[0].match(static_cast<Index>(i), e, values_.data());
+        }
+      }
+    });
+  }
+
+  double energy(const Context& context) const {
+    const Kernel& kernel = kernels_[static_cast<std::size_t>(level_)];
+    const std::size_t n = values_.size();
+    std::vector<double> parts((n + grain - 1) / grain, 0);
+    context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
+      double sum = 0;
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto node = static_cast<Index>(i);
+        sum += integers_.empty() ? kernel.energy(node, values_.data())
+                                 : kernel.energy_frozen(node, values_.data(), integers_.data());
+      }
+      parts[begin / grain] = sum;
+    });
+    return std::accumulate(parts.begin(), parts.end(), 0.0);
+  }
+
+ private:
+  static constexpr std::size_t grain = 2048;
+
+  int coarsest() const { return static_cast<int>(hierarchy_.levels.size()) - 1; }
+  const Graph& graph() const { return hierarchy_.levels[static_cast<std::size_t>(level_)]; }
+
+  void enter_level() {
+    if (options_.schedule == Schedule::blocks) coloring_ = color_blocks(graph());
+  }
+
+  bool is_active(std::size_t i) const {
+    return active_.empty() || active_[static_cast<std::size_t>(level_)][i];
+  }
+
+  void sweep(const Context& context) {
+    const Kernel& kernel = kernels_[static_cast<std::size_t>(level_)];
+    const std::size_t n = values_.size();
+    if (options_.schedule == Schedule::jacobi) {
+      std::vector<Value> next(n);
+      context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          next[i] = is_active(i) ? kernel.relax(static_cast<Index>(i), values_.data()) : values_[i];
+        }
+      });
+      values_.swap(next);
+    } else {
+      visit(
+          [&](Index i) {
+            if (is_active(i)) values_[i] = kernel.relax(i, values_.data());
+          },
+          context);
+    }
+  }
+
+  void sweep_frozen(const Context& context) {
+    visit(
+        [&](Index i) {
+          if (is_active(i)) {
+            values_[i] = kernels_[0].relax_frozen(i, values_.data(), integers_.data());
+          }
+        },
+        context);
+  }
+
+  /// Calls `body` for every node, in the order of the schedule.
+  template <typename Body>
+  void visit(const Body& body, const Context& context) {
+    const std::size_t n = values_.size();
+    if (options_.schedule == Schedule::random_order) {
+      std::vector<std::pair<std::uint64_t, Index>> order(n);
+      const std::uint64_t round = hash64(options_.seed + 1, ++rounds_);
+      for (std::size_t i = 0; i < n; ++i) order[i] = {hash64(round, i), static_cast<Index>(i)};
+      std::sort(order.begin(), order.end());
+      for (const auto& [hash, i] : order) body(i);
+      return;
+    }
+    if (options_.schedule == Schedule::jacobi) {
+      for (Index i = 0; i < n; ++i) body(i);
+      return;
+    }
+    for (const std::vector<Index>& blocks : coloring_.colors) {
+      context.for_ranges(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) {
+          const std::size_t first = blocks[b] * BlockColoring::block_size;
+          const std::size_t last = std::min(n, first + BlockColoring::block_size);
+          for (std::size_t i = first; i < last; ++i) body(static_cast<Index>(i));
+        }
+      });
+    }
+  }
+
+  /// Copies the solution to the next finer level.
+  void descend(const Context& context) {
+    --level_;
+    sweep_ = 0;
+    const auto l = static_cast<std::size_t>(level_);
+    const std::vector<Index>& parents = hierarchy_.parents[l];
+    std::vector<Value> finer(parents.size());
+    context.for_ranges(finer.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        finer[i] = is_active(i) ? kernels_[l].prolong(static_cast<Index>(i), values_[parents[i]])
+                                : held_[l][i];
+      }
+    });
+    values_.swap(finer);
+    enter_level();
+  }
+
+  /// The opposite, for restart(): values of level l + 1 from those of level l.
+  void restrict_level(std::size_t l) {
+    const std::vector<Index>& parents = hierarchy_.parents[l];
+    const Graph& fine = hierarchy_.levels[l];
+    const std::size_t n = hierarchy_.levels[l + 1].size();
+    held_[l + 1].resize(n);
+    active_[l + 1].assign(n, 0);
+    std::vector<Index> first(n, no_index);
+    for (Index i = 0; i < parents.size(); ++i) {
+      const Index k = parents[i];
+      active_[l + 1][k] |= active_[l][i];
+      if (first[k] == no_index) {
+        first[k] = i;
+        held_[l + 1][k] = kernels_[l + 1].merge(k, held_[l][i], held_[l][i], 1);
+      } else {
+        const float total = fine.areas[first[k]] + fine.areas[i];
+        const float share = total > 0 ? fine.areas[first[k]] / total : 0.5f;
+        held_[l + 1][k] = kernels_[l + 1].merge(k, held_[l][first[k]], held_[l][i], share);
+      }
+    }
+  }
+
+  const Hierarchy& hierarchy_;
+  SolverOptions options_;
+  const std::vector<Kernel>& kernels_;
+  std::vector<EnergyRecord>& energies_;
+  int level_ = 0;
+  int sweep_ = 0;
+  std::uint64_t rounds_ = 0;
+  std::vector<Value> values_;  // of the current level
+  BlockColoring coloring_;     // of the current level
+  std::vector<Integers> integers_;
+  // Of a restart on a region: which nodes may change, and the values that the others keep.
+  std::vector<std::vector<std::uint8_t>> active_;
+  std::vector<std::vector<Value>> held_;
+};
+
+}  // namespace meshgrain

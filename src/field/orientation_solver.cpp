@@ -1,0 +1,87 @@
+#include "field/constraints.h"
+#include "field/multiresolution.h"
+#include "field/orientation_kernel.h"
+#include "field/with_symmetry.h"
+#include "meshgrain/fields.h"
+
+namespace meshgrain {
+namespace {
+
+template <int N, OrientationEnergy E>
+class Solver final : public OrientationSolver {
+  using Kernel = OrientationKernel<N, E>;
+
+ public:
+  Solver(const Hierarchy& hierarchy, const OrientationOptions& options,
+         std::span<const OrientationConstraint> constraints)
+      : hierarchy_(hierarchy),
+        constraints_(spread_constraints(hierarchy, N, constraints)),
+        kernels_(make_kernels()),
+        iteration_(hierarchy, options, kernels_, energies_) {}
+
+  bool step(const Context& context) override { return iteration_.step(context); }
+  int level() const override { return iteration_.level(); }
+  double progress() const override { return iteration_.progress(); }
+  void restart(std::span<const Index> region) override { iteration_.restart(region); }
+  void freeze_integers() override { iteration_.freeze_integers(Context(1)); }
+  double energy(const Context& context) const override { return iteration_.energy(context); }
+
+  OrientationField field() const override {
+    OrientationField field{N, iteration_.values()};
+    for (Vec3& d : field.directions) {
+      if (const float length = d.norm(); length > 0) d /= length;
+    }
+    return field;
+  }
+
+  void set_field(const OrientationField& field) override { iteration_.set_values(field.directions); }
+
+  void set_constraints(std::span<const OrientationConstraint> constraints) override {
+    constraints_ = spread_constraints(hierarchy_, N, constraints);
+    kernels_ = make_kernels();
+  }
+
+ private:
+  std::vector<Kernel> make_kernels() const {
+    std::vector<Kernel> kernels;
+    for (std::size_t l = 0; l < hierarchy_.levels.size(); ++l) {
+      kernels.emplace_back(hierarchy_.levels[l], constraints_[l]);
+    }
+    return kernels;
+  }
+
+  const Hierarchy& hierarchy_;
+  std::vector<DirectionConstraints> constraints_;
+  std::vector<Kernel> kernels_;
+  Multiresolution<Kernel> iteration_;
+};
+
+}  // namespace
+
+std::unique_ptr<OrientationSolver> OrientationSolver::create(
+    const Hierarchy& hierarchy, const OrientationOptions& options,
+    std::span<const OrientationConstraint> constraints) {
+  return with_rosy(options.rosy, [&]<int N>() -> std::unique_ptr<OrientationSolver> {
+    switch (options.energy) {
+      case OrientationEnergy::intrinsic:
+        return std::make_unique<Solver<N, OrientationEnergy::intrinsic>>(hierarchy, options,
+                                                                         constraints);
+      case OrientationEnergy::convex:
+        return std::make_unique<Solver<N, OrientationEnergy::convex>>(hierarchy, options,
+                                                                      constraints);
+      default:
+        return std::make_unique<Solver<N, OrientationEnergy::extrinsic>>(hierarchy, options,
+                                                                         constraints);
+    }
+  });
+}
+
+OrientationField solve_orientation(const Hierarchy& hierarchy, const OrientationOptions& options,
+                                   std::span<const OrientationConstraint> constraints,
+                                   const Context& context) {
+  const auto solver = OrientationSolver::create(hierarchy, options, constraints);
+  solver->solve(context);
+  return solver->field();
+}
+
+}  // namespace meshgrain

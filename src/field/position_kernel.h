@@ -1,0 +1,193 @@
+#pragma once
+
+#include "field/posy.h"
+#include "meshgrain/fields.h"
+#include "util/hash.h"
+
+namespace meshgrain {
+
+/// Constraints of one level, dense: strength 0 where there is none. Empty if the level has none.
+struct LineConstraints {
+  std::vector<Vec3> points;
+  std::vector<Vec3> directions;  // zero: the point itself
+  std::vector<float> strengths;
+};
+
+/// What a position field on one level is made over.
+struct LatticeFrame {
+  std::vector<Vec3> directions;
+  EdgeLength edge_length;
+};
+
+/// One node's part of a position field (section 3.3): the energies of Eq. 5 and 6 for both lattices.
+/// The value is the lattice point nearest to the node.
+template <int S, PositionEnergy E>
+class PositionKernel {
+ public:
+  using Value = Vec3;
+  using Integers = Translations;
+
+  PositionKernel(const Graph& graph, const LatticeFrame& frame, const LineConstraints& constraints,
+                 float extent)
+      : graph_(&graph), frame_(&frame), constraints_(&constraints), extent_(extent) {}
+
+  /// Somewhere in the tangent plane, as far away as the surface reaches: only the fraction matters.
+  Vec3 random(Index i, std::uint64_t hash) const {
+    const Vec3& n = graph_->normals[i];
+    const Vec3 u = any_tangent(n);
+    const float a = unit_float(hash64(hash, 1)) - 0.5f, b = unit_float(hash64(hash, 2)) - 0.5f;
+    return nearest(i, graph_->positions[i] + extent_ * (a * u + b * n.cross(u)));
+  }
+
+  /// Eq. 7: running weighted mean of the neighbours' matched positions, rounded at the end.
+  Vec3 relax(Index i, const Vec3* field) const {
+    const Vec3 &x = graph_->positions[i], &n = graph_->normals[i];
+    const float rho = frame_->edge_length[i];
+    Vec3 mean = field[i];
+    float total = 0;
+    for (Index e = graph_->offsets[i]; e < graph_->offsets[i + 1]; ++e) {
+      const Index j = graph_->neighbors[e];
+      const float w = graph_->weight(e);
+      const PoSy<S> lattice(mean, frame_->directions[i], n, rho);
+      Vec3 own, other;
+      if constexpr (E == PositionEnergy::extrinsic) {
+        const PoSy<S> neighbor = lattice_at(j, field);
+        const Vec3 q = intermediate_position(x, n, graph_->positions[j], graph_->normals[j]);
+        const Translations t = match_lattices(lattice, neighbor, q);
+        own = lattice.point(t.i);
+        other = neighbor.point(t.j);
+      } else {
+        own = mean;
+        other = shifted(i, j, field, lattice);
+      }
+      mean = (total * own + w * other) / (total + w);
+      mean = project(i, mean);
+      total += w;
+    }
+    return nearest(i, constrain(i, mean));
+  }
+
+  double energy(Index i, const Vec3* field) const {
+    double sum = 0;
+    for (Index e = graph_->offsets[i]; e < graph_->offsets[i + 1]; ++e) {
+      sum += graph_->weight(e) * squared_distance(i, e, field, match(i, e, field));
+    }
+    return sum;
+  }
+
+  Vec3 prolong(Index i, const Vec3& value) const { return nearest(i, project(i, value)); }
+
+  Vec3 merge(Index i, const Vec3& a, const Vec3& b, float share) const {
+    const Vec3 pa = project(i, a);
+    const PoSy<S> lattice(project(i, b), frame_->directions[i], graph_->normals[i],
+                          frame_->edge_length[i]);
+    return nearest(i, project(i, share * pa + (1 - share) * lattice.point(lattice.round(pa))));
+  }
+
+  /// The integers of an edge; for the intrinsic energy, those of the unfolded neighbour (t_ij of
+  /// Eq. 5) as `j`.
+  Translations match(Index i, std::size_t entry, const Vec3* field) const {
+    const Index j = graph_->neighbors[entry];
+    const PoSy<S> lattice = lattice_at(i, field);
+    if constexpr (E == PositionEnergy::extrinsic) {
+      const Vec3 q = intermediate_position(graph_->positions[i], graph_->normals[i],
+                                           graph_->positions[j], graph_->normals[j]);
+      return match_lattices(lattice, lattice_at(j, field), q);
+    } else {
+      PoSy<S> moved = lattice;
+      moved.p = unfolded(i, j, field);
+      return {{0, 0}, moved.round(field[i])};
+    }
+  }
+
+  /// With integers held, the mean of the neighbours' points less our own translation: the exact
+  /// minimiser within the tangent plane.
+  Vec3 relax_frozen(Index i, const Vec3* field, const Translations* integers) const {
+    Vec3 sum = Vec3::Zero();
+    float total = 0;
+    for (Index e = graph_->offsets[i]; e < graph_->offsets[i + 1]; ++e) {
+      const float w = graph_->weight(e);
+      const auto [own, other] = matched_pair(i, e, field, integers[e]);
+      sum += w * (other - (own - field[i]));
+      total += w;
+    }
+    return total > 0 ? constrain(i, project(i, sum / total)) : field[i];
+  }
+
+  double energy_frozen(Index i, const Vec3* field, const Translations* integers) const {
+    double sum = 0;
+    for (Index e = graph_->offsets[i]; e < graph_->offsets[i + 1]; ++e) {
+      sum += graph_->weight(e) * squared_distance(i, e, field, integers[e]);
+    }
+    return sum;
+  }
+
+ private:
+  PoSy<S> lattice_at(Index i, const Vec3* field) const {
+    return {field[i], frame_->directions[i], graph_->normals[i], frame_->edge_length[i]};
+  }
+
+  /// The lattice point nearest to the node (last line of Eq. 7).
+  Vec3 nearest(Index i, const Vec3& p) const {
+    const PoSy<S> lattice(p, frame_->directions[i], graph_->normals[i], frame_->edge_length[i]);
+    return lattice.point(lattice.round(graph_->positions[i]));
+  }
+
+  Vec3 project(Index i, const Vec3& p) const {
+    return p - graph_->normals[i] * graph_->normals[i].dot(p - graph_->positions[i]);
+  }
+
+  /// p_ji: the neighbour's point unfolded into the tangent plane of i.
+  Vec3 unfolded(Index i, Index j, const Vec3* field) const {
+    const Vec3 &ni = graph_->normals[i], &nj = graph_->normals[j];
+    const Vec3 q = intermediate_position(graph_->positions[i], ni, graph_->positions[j], nj);
+    return q + transport(field[j] - q, nj, ni);
+  }
+
+  /// T(p_ji, n_i, o_i, t_ij): of the lattice of i put through p_ji, the point nearest to p_i.
+  Vec3 shifted(Index i, Index j, const Vec3* field, PoSy<S> lattice) const {
+    const Vec3 own = lattice.p;
+    lattice.p = unfolded(i, j, field);
+    return lattice.point(lattice.round(own));
+  }
+
+  std::pair<Vec3, Vec3> matched_pair(Index i, std::size_t entry, const Vec3* field,
+                                     const Translations& t) const {
+    const Index j = graph_->neighbors[entry];
+    PoSy<S> lattice = lattice_at(i, field);
+    if constexpr (E == PositionEnergy::extrinsic) {
+      return {lattice.point(t.i), lattice_at(j, field).point(t.j)};
+    } else {
+      lattice.p = unfolded(i, j, field);
+      return {field[i], lattice.point(t.j)};
+    }
+  }
+
+  double squared_distance(Index i, std::size_t entry, const Vec3* field,
+                          const Translations& t) const {
+    const auto [own, other] = matched_pair(i, entry, field, t);
+    const float rho = frame_->edge_length[i];
+    return (own - other).squaredNorm() / (rho * rho);
+  }
+
+  /// Section 3.7: between the value found and the nearest point of the constraint's line that the
+  /// lattice could have.
+  Vec3 constrain(Index i, const Vec3& p) const {
+    if (constraints_->strengths.empty() || constraints_->strengths[i] == 0) return p;
+    const Vec3 &c = constraints_->points[i], &d = constraints_->directions[i];
+    const PoSy<S> lattice(p, frame_->directions[i], graph_->normals[i], frame_->edge_length[i]);
+    // Of the lattice, the point nearest to the line is the one to pull: any of its row would do.
+    const Vec3 x = graph_->positions[i];
+    const Vec3 foot = d.isZero() ? c : Vec3(c + d * d.dot(x - c));
+    const Vec3 own = lattice.point(lattice.round(foot));
+    const Vec3 target = d.isZero() ? c : Vec3(c + d * d.dot(own - c));
+    return project(i, own + constraints_->strengths[i] * (target - own));
+  }
+
+  const Graph* graph_;
+  const LatticeFrame* frame_;
+  const LineConstraints* constraints_;
+  float extent_;
+};
+
+}  // namespace meshgrain

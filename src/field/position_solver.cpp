@@ -1,0 +1,134 @@
+#include <Eigen/Geometry>
+
+#include "field/constraints.h"
+#include "field/multiresolution.h"
+#include "field/position_kernel.h"
+#include "field/with_symmetry.h"
+#include "meshgrain/error.h"
+#include "meshgrain/fields.h"
+
+namespace meshgrain {
+namespace {
+
+/// Orientations and edge lengths of all levels, from those of the finest.
+template <int N>
+std::vector<LatticeFrame> restrict_frames(const Hierarchy& hierarchy,
+                                          const OrientationField& orientation,
+                                          const EdgeLength& edge_length) {
+  std::vector<LatticeFrame> frames(hierarchy.levels.size());
+  frames[0] = {orientation.directions, edge_length};
+  for (std::size_t l = 0; l + 1 < frames.size(); ++l) {
+    const Graph &fine = hierarchy.levels[l], &coarse = hierarchy.levels[l + 1];
+    const DirectionConstraints none;
+    const OrientationKernel<N, OrientationEnergy::extrinsic> kernel(coarse, none);
+    std::vector<Vec3>& directions = frames[l + 1].directions;
+    directions.resize(coarse.size());
+    std::vector<float> lengths(edge_length.uniform() ? 0 : coarse.size());
+    std::vector<Index> first(coarse.size(), no_index);
+    for (Index i = 0; i < fine.size(); ++i) {
+      const Index k = hierarchy.parents[l][i];
+      const Vec3& direction = frames[l].directions[i];
+      if (first[k] == no_index) {
+        first[k] = i;
+        directions[k] = kernel.prolong(k, direction);
+        if (!lengths.empty()) lengths[k] = frames[l].edge_length[i];
+        continue;
+      }
+      const float total = fine.areas[first[k]] + fine.areas[i];
+      const float share = total > 0 ? fine.areas[first[k]] / total : 0.5f;
+      directions[k] = kernel.merge(k, frames[l].directions[first[k]], direction, share);
+      if (!lengths.empty()) {
+        lengths[k] = share * lengths[k] + (1 - share) * frames[l].edge_length[i];
+      }
+    }
+    frames[l + 1].edge_length = edge_length.uniform() ? edge_length : EdgeLength(std::move(lengths));
+  }
+  return frames;
+}
+
+template <int S, PositionEnergy E>
+class Solver final : public PositionSolver {
+  using Kernel = PositionKernel<S, E>;
+
+ public:
+  Solver(const Hierarchy& hierarchy, std::vector<LatticeFrame> frames,
+         const PositionOptions& options, std::span<const PositionConstraint> constraints)
+      : hierarchy_(hierarchy),
+        frames_(std::move(frames)),
+        constraints_(spread_constraints(hierarchy, constraints)),
+        kernels_(make_kernels()),
+        iteration_(hierarchy, options, kernels_, energies_) {}
+
+  bool step(const Context& context) override { return iteration_.step(context); }
+  int level() const override { return iteration_.level(); }
+  double progress() const override { return iteration_.progress(); }
+  void restart(std::span<const Index> region) override { iteration_.restart(region); }
+  void freeze_integers() override { iteration_.freeze_integers(Context(1)); }
+  double energy(const Context& context) const override { return iteration_.energy(context); }
+
+  PositionField field() const override { return {S, frames_[0].edge_length, iteration_.values()}; }
+  void set_field(const PositionField& field) override { iteration_.set_values(field.points); }
+
+  void set_constraints(std::span<const PositionConstraint> constraints) override {
+    constraints_ = spread_constraints(hierarchy_, constraints);
+    kernels_ = make_kernels();
+  }
+
+ private:
+  std::vector<Kernel> make_kernels() const {
+    Eigen::AlignedBox3f box;
+    for (const Vec3& p : hierarchy_.levels[0].positions) box.extend(p);
+    const float extent = hierarchy_.levels[0].size() == 0 ? 1 : box.diagonal().norm();
+    std::vector<Kernel> kernels;
+    for (std::size_t l = 0; l < hierarchy_.levels.size(); ++l) {
+      kernels.emplace_back(hierarchy_.levels[l], frames_[l], constraints_[l], extent);
+    }
+    return kernels;
+  }
+
+  const Hierarchy& hierarchy_;
+  std::vector<LatticeFrame> frames_;
+  std::vector<LineConstraints> constraints_;
+  std::vector<Kernel> kernels_;
+  Multiresolution<Kernel> iteration_;
+};
+
+}  // namespace
+
+std::unique_ptr<PositionSolver> PositionSolver::create(
+    const Hierarchy& hierarchy, const OrientationField& orientation, const EdgeLength& edge_length,
+    const PositionOptions& options, std::span<const PositionConstraint> constraints) {
+  if (options.posy % orientation.rosy != 0) {
+    throw Error("a " + std::to_string(options.posy) + "-PoSy cannot follow a " +
+                std::to_string(orientation.rosy) +
+                "-RoSy: its symmetry must be a multiple of the orientation field's");
+  }
+  for (const float length : edge_length.values) {
+    if (!(length > 0) || !std::isfinite(length)) {
+      throw Error("the target edge length must be a positive number");
+    }
+  }
+  auto frames = with_rosy(orientation.rosy, [&]<int N>() {
+    return restrict_frames<N>(hierarchy, orientation, edge_length);
+  });
+  return with_posy(options.posy, [&]<int S>() -> std::unique_ptr<PositionSolver> {
+    if (options.energy == PositionEnergy::intrinsic) {
+      return std::make_unique<Solver<S, PositionEnergy::intrinsic>>(hierarchy, std::move(frames),
+                                                                    options, constraints);
+    }
+    return std::make_unique<Solver<S, PositionEnergy::extrinsic>>(hierarchy, std::move(frames),
+                                                                  options, constraints);
+  });
+}
+
+PositionField solve_position(const Hierarchy& hierarchy, const OrientationField& orientation,
+                             const EdgeLength& edge_length, const PositionOptions& options,
+                             std::span<const PositionConstraint> constraints,
+                             const Context& context) {
+  const auto solver =
+      PositionSolver::create(hierarchy, orientation, edge_length, options, constraints);
+  solver->solve(context);
+  return solver->field();
+}
+
+}  // namespace meshgrain

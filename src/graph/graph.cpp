@@ -1,0 +1,225 @@
+#include "meshgrain/graph.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "graph/nearest_neighbors.h"
+#include "mesh/incidence.h"
+#include "meshgrain/error.h"
+#include "meshgrain/normals.h"
+
+namespace meshgrain {
+namespace {
+
+constexpr std::size_t grain = 4096;
+
+/// Fills offsets and neighbours from `neighbors_of(i, out)`, which appends the neighbours of node i
+/// in increasing order.
+template <typename NeighborsOf>
+void gather_neighbors(Graph& graph, const NeighborsOf& neighbors_of, const Context& context) {
+  const std::size_t n = graph.size();
+  graph.offsets.assign(n + 1, 0);
+  std::vector<std::vector<Index>> gathered((n + grain - 1) / grain);
+  context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
+    auto& out = gathered[begin / grain];
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t start = out.size();
+      neighbors_of(static_cast<Index>(i), out);
+      graph.offsets[i + 1] = static_cast<Index>(out.size() - start);
+    }
+  });
+  for (std::size_t i = 0; i < n; ++i) graph.offsets[i + 1] += graph.offsets[i];
+  graph.neighbors.reserve(graph.offsets[n]);
+  for (auto& range : gathered) {
+    graph.neighbors.insert(graph.neighbors.end(), range.begin(), range.end());
+    range = {};
+  }
+}
+
+void sort_unique_from(std::vector<Index>& values, std::size_t start) {
+  const auto begin = values.begin() + static_cast<std::ptrdiff_t>(start);
+  std::sort(begin, values.end());
+  values.erase(std::unique(begin, values.end()), values.end());
+}
+
+float cotangent(const Vec3& apex, const Vec3& a, const Vec3& b) {
+  const Vec3 u = a - apex, v = b - apex;
+  const float sine = u.cross(v).norm();
+  return sine > 0 ? u.dot(v) / sine : 0.0f;
+}
+
+/// The part of a triangle's area that belongs to its corner `a`: that of its Voronoi cell, cut to the
+/// triangle where that is obtuse (Meyer et al. 2003, "mixed area").
+float voronoi_share(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const float area = 0.5f * (b - a).cross(c - a).norm();
+  if ((b - a).dot(c - a) < 0) return area / 2;
+  if ((a - b).dot(c - b) < 0 || (a - c).dot(b - c) < 0) return area / 4;
+  return ((b - a).squaredNorm() * cotangent(c, a, b) + (c - a).squaredNorm() * cotangent(b, c, a)) /
+         8;
+}
+
+void require_triangles(const Mesh& mesh) {
+  if (mesh.faces.uniform_degree() != 3) {
+    throw Error("a graph is built from triangles: triangulate the mesh first");
+  }
+}
+
+Graph vertex_graph(const Mesh& mesh, const GraphOptions& options, const Context& context) {
+  Graph graph;
+  graph.positions = mesh.positions;
+  graph.normals = vertex_normals(mesh, options.crease_degrees, context);
+  const Incidence around = incident_faces(mesh.faces, mesh.positions.size());
+  gather_neighbors(
+      graph,
+      [&](Index v, std::vector<Index>& out) {
+        const std::size_t start = out.size();
+        for (const Index f : around[v]) {
+          for (const Index w : mesh.faces[f]) {
+            if (w != v) out.push_back(w);
+          }
+        }
+        sort_unique_from(out, start);
+      },
+      context);
+
+  graph.areas.assign(graph.size(), 0);
+  const bool cotangents = options.weights == GraphWeights::geometric;
+  if (cotangents) graph.weights.assign(graph.neighbors.size(), 0);
+  context.for_ranges(graph.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const auto neighbors = graph.neighbors_of(v);
+      const Vec3& p = mesh.positions[v];
+      for (const Index f : around[v]) {
+        const auto face = mesh.faces[f];
+        const std::size_t k = static_cast<std::size_t>(
+            std::find(face.begin(), face.end(), static_cast<Index>(v)) - face.begin());
+        const Index b = face[(k + 1) % 3], c = face[(k + 2) % 3];
+        graph.areas[v] += voronoi_share(p, mesh.positions[b], mesh.positions[c]);
+        if (!cotangents) continue;
+        const auto entry = [&](Index w) -> float& {
+          const auto it = std::lower_bound(neighbors.begin(), neighbors.end(), w);
+          return graph.weights[graph.offsets[v] + static_cast<std::size_t>(it - neighbors.begin())];
+        };
+        entry(b) += 0.5f * cotangent(mesh.positions[c], p, mesh.positions[b]);
+        entry(c) += 0.5f * cotangent(mesh.positions[b], p, mesh.positions[c]);
+      }
+      // Weights must be positive for the local steps to lower the energy; obtuse pairs count little
+      // instead of less than nothing, needles do not outweigh everything else.
+      if (cotangents) {
+        for (std::size_t e = graph.offsets[v]; e < graph.offsets[v + 1]; ++e) {
+          graph.weights[e] = std::clamp(graph.weights[e], 0.01f, 10.0f);
+        }
+      }
+    }
+  });
+  return graph;
+}
+
+Graph face_graph(const Mesh& mesh, const Context& context) {
+  Graph graph;
+  const std::size_t n = mesh.faces.size();
+  graph.positions.resize(n);
+  graph.normals.resize(n);
+  graph.areas.resize(n);
+  for (std::size_t f = 0; f < n; ++f) {
+    const auto face = mesh.faces[f];
+    const Vec3 &a = mesh.positions[face[0]], &b = mesh.positions[face[1]],
+               &c = mesh.positions[face[2]];
+    graph.positions[f] = (a + b + c) / 3;
+    const Vec3 normal = (b - a).cross(c - a);
+    const float twice_area = normal.norm();
+    graph.areas[f] = 0.5f * twice_area;
+    graph.normals[f] = twice_area > 0 ? Vec3(normal / twice_area) : Vec3::UnitZ();
+  }
+  const Incidence around = incident_faces(mesh.faces, mesh.positions.size());
+  gather_neighbors(
+      graph,
+      [&](Index f, std::vector<Index>& out) {
+        const std::size_t start = out.size();
+        const auto face = mesh.faces[f];
+        for (std::size_t k = 0; k < 3; ++k) {
+          const auto first = around[face[k]], second = around[face[(k + 1) % 3]];
+          std::set_intersection(first.begin(), first.end(), second.begin(), second.end(),
+                                std::back_inserter(out));
+        }
+        sort_unique_from(out, start);
+        out.erase(std::find(out.begin() + static_cast<std::ptrdiff_t>(start), out.end(), f));
+      },
+      context);
+  return graph;
+}
+
+Graph cloud_graph(const Mesh& cloud, const GraphOptions& options, const Context& context) {
+  if (cloud.positions.size() < 4) throw Error("a point cloud needs at least four points");
+  Graph graph;
+  graph.positions = cloud.positions;
+  graph.normals =
+      cloud.normals.empty() ? estimate_normals(cloud, options.neighbors, context) : cloud.normals;
+  const std::size_t n = cloud.positions.size();
+  const Neighborhoods nearest = nearest_neighbors(cloud.positions, options.neighbors, context);
+
+  // Being among the nearest is not mutual, but the fields need every edge from both ends.
+  std::vector<Index> offsets(n + 1, 0);
+  for (const Index j : nearest.indices) {
+    if (j != no_index) ++offsets[j + 1];
+  }
+  for (std::size_t i = 0; i < n; ++i) offsets[i + 1] += offsets[i];
+  std::vector<Index> reverse(offsets[n]);
+  {
+    std::vector<Index> next(offsets.begin(), offsets.end() - 1);
+    for (std::size_t e = 0; e < nearest.indices.size(); ++e) {
+      const Index j = nearest.indices[e];
+      if (j != no_index) reverse[next[j]++] = static_cast<Index>(e / nearest.k);
+    }
+  }
+  gather_neighbors(
+      graph,
+      [&](Index i, std::vector<Index>& out) {
+        const std::size_t start = out.size();
+        for (std::size_t k = 0; k < nearest.k; ++k) {
+          const Index j = nearest.indices[i * nearest.k + k];
+          if (j != no_index) out.push_back(j);
+        }
+        out.insert(out.end(), reverse.begin() + offsets[i], reverse.begin() + offsets[i + 1]);
+        sort_unique_from(out, start);
+      },
+      context);
+
+  // A point stands for the disk that reaches half way to its neighbours: exact enough for merging
+  // by area, and in the mean right for a target count.
+  graph.areas.resize(n);
+  if (options.weights == GraphWeights::geometric) graph.weights.resize(graph.neighbors.size());
+  context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto neighbors = graph.neighbors_of(i);
+      float squares = 0;
+      for (const Index j : neighbors) {
+        squares += (graph.positions[j] - graph.positions[i]).squaredNorm();
+      }
+      // k points evenly spread over a disk of radius r have a mean squared distance of r^2 / 2, and
+      // the disk holds k + 1 points.
+      const float count = static_cast<float>(neighbors.size());
+      const float mean = count > 0 ? squares / count : 0.0f;
+      graph.areas[i] = 3.14159265f * 2 * mean / (count + 1);
+      if (graph.weights.empty()) continue;
+      for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
+        // The heat kernel of Belkin et al. 2009; symmetric up to the choice of the scale.
+        const float d = (graph.positions[graph.neighbors[e]] - graph.positions[i]).squaredNorm();
+        graph.weights[e] = mean > 0 ? std::max(std::exp(-d / (2 * mean)), 0.01f) : 1.0f;
+      }
+    }
+  });
+  return graph;
+}
+
+}  // namespace
+
+Graph build_graph(const Mesh& mesh, const GraphOptions& options, const Context& context) {
+  if (mesh.is_point_cloud()) return cloud_graph(mesh, options, context);
+  require_triangles(mesh);
+  return options.nodes == GraphNodes::faces ? face_graph(mesh, context)
+                                            : vertex_graph(mesh, options, context);
+}
+
+}  // namespace meshgrain

@@ -1,0 +1,131 @@
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "mesh/incidence.h"
+#include "meshgrain/error.h"
+#include "meshgrain/surface.h"
+
+namespace meshgrain {
+namespace {
+
+/// Ids of the midpoints of all long edges, one a (undirected) edge: for each vertex the list of
+/// longer-indexed ends of its long edges, sorted; the id is the place in the list of all.
+struct Midpoints {
+  std::vector<Index> offsets;
+  std::vector<Index> ends;
+
+  Index find(Index a, Index b) const {
+    if (a > b) std::swap(a, b);
+    const auto begin = ends.begin() + offsets[a], end = ends.begin() + offsets[a + 1];
+    const auto it = std::lower_bound(begin, end, b);
+    return it != end && *it == b ? static_cast<Index>(it - ends.begin()) : no_index;
+  }
+};
+
+Midpoints long_edges(const Mesh& mesh, float max_length) {
+  const Incidence around = incident_faces(mesh.faces, mesh.positions.size());
+  const float limit = max_length * max_length;
+  Midpoints result;
+  result.offsets.reserve(mesh.positions.size() + 1);
+  result.offsets.push_back(0);
+  std::vector<Index> others;
+  for (Index a = 0; a < mesh.positions.size(); ++a) {
+    others.clear();
+    for (const Index f : around[a]) {
+      for (const Index b : mesh.faces[f]) {
+        if (b > a && (mesh.positions[b] - mesh.positions[a]).squaredNorm() > limit) {
+          others.push_back(b);
+        }
+      }
+    }
+    std::sort(others.begin(), others.end());
+    others.erase(std::unique(others.begin(), others.end()), others.end());
+    result.ends.insert(result.ends.end(), others.begin(), others.end());
+    result.offsets.push_back(static_cast<Index>(result.ends.size()));
+  }
+  return result;
+}
+
+void append_midpoint(Mesh& mesh, Index a, Index b) {
+  mesh.positions.push_back(0.5f * (mesh.positions[a] + mesh.positions[b]));
+  if (!mesh.normals.empty()) {
+    const Vec3 sum = mesh.normals[a] + mesh.normals[b];
+    mesh.normals.push_back(sum.norm() > 1e-6f ? Vec3(sum.normalized()) : mesh.normals[a]);
+  }
+  if (!mesh.values.empty()) mesh.values.push_back(0.5f * (mesh.values[a] + mesh.values[b]));
+}
+
+/// Splits one triangle by the midpoints of its long edges (`mid[k]` on the edge from corner k to
+/// k + 1).
+void split(const std::vector<Vec3>& positions, std::array<Index, 3> v, std::array<Index, 3> mid,
+           Faces& out) {
+  const int count = (mid[0] != no_index) + (mid[1] != no_index) + (mid[2] != no_index);
+  // Turn the triangle so that the pattern starts at the first edge: the split one if there is one,
+  // the whole one last if there are two.
+  const auto rotate = [&] {
+    v = {v[1], v[2], v[0]};
+    mid = {mid[1], mid[2], mid[0]};
+  };
+  if (count == 0) {
+    out.push_back({v[0], v[1], v[2]});
+  } else if (count == 1) {
+    while (mid[0] == no_index) rotate();
+    out.push_back({v[0], mid[0], v[2]});
+    out.push_back({mid[0], v[1], v[2]});
+  } else if (count == 2) {
+    while (mid[2] != no_index) rotate();
+    out.push_back({mid[0], v[1], mid[1]});
+    // The quadrilateral that is left, along its shorter diagonal.
+    if ((positions[mid[0]] - positions[v[2]]).squaredNorm() <
+        (positions[mid[1]] - positions[v[0]]).squaredNorm()) {
+      out.push_back({v[0], mid[0], v[2]});
+      out.push_back({mid[0], mid[1], v[2]});
+    } else {
+      out.push_back({v[0], mid[0], mid[1]});
+      out.push_back({v[0], mid[1], v[2]});
+    }
+  } else {
+    out.push_back({v[0], mid[0], mid[2]});
+    out.push_back({mid[0], v[1], mid[1]});
+    out.push_back({mid[2], mid[1], v[2]});
+    out.push_back({mid[0], mid[1], mid[2]});
+  }
+}
+
+}  // namespace
+
+void subdivide(Mesh& mesh, double max_length, const Context& context) {
+  if (mesh.faces.empty()) return;
+  // Each round halves what is too long, so 64 rounds pass any finite length in single precision.
+  for (int round = 0; round < 64; ++round) {
+    context.check();
+    const Midpoints midpoints = long_edges(mesh, static_cast<float>(max_length));
+    if (midpoints.ends.empty()) return;
+    const auto old_count = static_cast<Index>(mesh.positions.size());
+    if (midpoints.ends.size() + old_count > 0xfffffff0u) {
+      throw Error("the target edge length is too small: subdividing the input to it takes more than "
+                  "four thousand million vertices");
+    }
+    for (Index a = 0; a < old_count; ++a) {
+      for (Index e = midpoints.offsets[a]; e < midpoints.offsets[a + 1]; ++e) {
+        append_midpoint(mesh, a, midpoints.ends[e]);
+      }
+    }
+    Faces finer;
+    finer.reserve(mesh.faces.size() + 2 * midpoints.ends.size(),
+                  3 * (mesh.faces.size() + 2 * midpoints.ends.size()));
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+      const auto face = std::as_const(mesh.faces)[f];
+      std::array<Index, 3> mid;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Index id = midpoints.find(face[k], face[(k + 1) % 3]);
+        mid[k] = id == no_index ? no_index : old_count + id;
+      }
+      split(mesh.positions, {face[0], face[1], face[2]}, mid, finer);
+    }
+    mesh.faces = std::move(finer);
+  }
+}
+
+}  // namespace meshgrain
