@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "meshgrain/fields.h"
+
+namespace meshgrain {
+
+/// Constraints that align both fields with the border of a triangle mesh (section 3.7): for the
+/// vertices of border edges, the direction of the edge, and its line for positions.
+struct BorderConstraints {
+  std::vector<OrientationConstraint> orientation;
+  std::vector<PositionConstraint> position;
+};
+BorderConstraints border_constraints(const Mesh& triangles);
+
+struct CurvatureAlignment {
+  /// Pull towards the principal directions at every node where they differ, 0 (none) to 1: the soft
+  /// constraint of Knöppel et al. 2013.
+  float strength = 0;
+  /// Hold the field fast where the surface bends by at least this much more one way than the other
+  /// over one edge length, in degrees: the hard constraint of Bommes et al. 2009. 0: none.
+  float hard_degrees = 0;
+};
+
+std::vector<OrientationConstraint> curvature_constraints(const Graph& graph, float edge_length,
+                                                         const CurvatureAlignment& alignment,
+                                                         const Context& context = Context());
+
+}  // namespace meshgrain

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "meshgrain/context.h"
+#include "meshgrain/extract.h"
+#include "meshgrain/graph.h"
+#include "meshgrain/mesh.h"
+
+namespace meshgrain {
+
+/// Splits every face with n corners into n quads, at its centre and the middles of its edges: the
+/// connectivity of one Catmull-Clark step. The faces are then four times as many.
+void split_into_quads(Extraction& extraction);
+
+/// Replaces a triangle mesh by its dual: one hexagon around each inner vertex of valence six. Faces
+/// of the border are left out.
+void take_dual(Extraction& extraction);
+
+/// Makes every vertex and edge manifold: faces that would be the third on an edge, or run along it the
+/// wrong way, are dropped, and a vertex where several fans of faces meet becomes one a fan. Returns
+/// the number of faces dropped.
+std::size_t make_manifold(Extraction& extraction);
+
+struct SmoothOptions {
+  int iterations = 10;
+};
+
+/// Evens the faces out: each iteration moves every vertex to the mean of where it would be in the
+/// regular polygons that fit its faces best, and back onto the surface. Border vertices move along
+/// the border, and the ones at its corners stay. `surface` is the triangle mesh or point cloud that
+/// `graph` was built on.
+void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
+            const SmoothOptions& options = {}, const Context& context = Context());
+
+}  // namespace meshgrain

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "meshgrain/alignment.h"
+#include "meshgrain/context.h"
+#include "meshgrain/fields.h"
+#include "meshgrain/graph.h"
+#include "meshgrain/mesh.h"
+#include "meshgrain/sizing.h"
+
+namespace meshgrain {
+
+enum class OutputFaces {
+  quads,          ///< Nothing but quads: a quad-dominant mesh of double edge length, subdivided once.
+  quad_dominant,  ///< Quads with some triangles and pentagons.
+  triangles,
+  hexagons,       ///< The dual of triangles.
+};
+
+/// Both fields, with the surface that they live on: what one program writes and another reads.
+struct Fields {
+  Mesh surface;  ///< The triangle mesh or point cloud whose vertices are the nodes, with normals.
+  OrientationField orientation;
+  PositionField position;
+};
+
+struct RemeshOptions {
+  OutputFaces faces = OutputFaces::quads;
+  int rosy = 0;  ///< 1, 2, 4 or 6; 0: 6 for triangles and hexagons, else 4.
+
+  /// How fine the written mesh is to be: the first of these that is not zero. If all are zero, the
+  /// mesh has a sixteenth of the input's vertices.
+  double edge_length = 0;  ///< In input units.
+  std::size_t face_count = 0;
+  std::size_t vertex_count = 0;
+
+  Sizing sizing;  ///< Where faces are to be smaller than elsewhere.
+  GraphOptions graph;
+  SolverOptions solver;
+  OrientationEnergy orientation_energy = OrientationEnergy::extrinsic;
+  PositionEnergy position_energy = PositionEnergy::extrinsic;
+  bool align_border = false;
+  CurvatureAlignment curvature;
+  int smoothing = 10;     ///< Iterations of smooth() (0: only put onto the surface).
+  bool manifold = false;  ///< Drop what is not manifold.
+
+  /// Use these instead of solving for an orientation field (and a position field, if that has
+  /// points). Values are taken from the nearest node, so the surfaces need not be the same.
+  const Fields* fields = nullptr;
+};
+
+struct StageTime {
+  std::string name;
+  double seconds = 0;
+};
+
+struct RemeshReport {
+  std::vector<StageTime> stages;
+  std::vector<std::string> notes;  ///< What was mended or left out, a line each.
+  std::size_t input_vertices = 0, input_faces = 0;
+  std::size_t nodes = 0, edges = 0, levels = 0;
+  double edge_length = 0;
+  std::optional<std::size_t> orientation_singularities, position_singularities;  ///< Meshes only.
+  std::vector<EnergyRecord> orientation_energies, position_energies;
+};
+
+struct RemeshResult {
+  Mesh mesh;
+  Fields fields;
+  RemeshReport report;
+};
+
+/// From mesh (or point cloud) to mesh. Throws Error if the input has no surface, or if options
+/// contradict each other.
+RemeshResult remesh(Mesh input, const RemeshOptions& options = {},
+                    const Context& context = Context());
+
+}  // namespace meshgrain

@@ -1,0 +1,87 @@
+#include "field/transfer.h"
+
+#include <nanoflann.hpp>
+
+#include "field/posy.h"
+#include "field/rosy.h"
+#include "field/with_symmetry.h"
+#include "meshgrain/error.h"
+
+namespace meshgrain {
+namespace {
+
+struct Points {
+  std::vector<Vec3> points;
+  std::size_t kdtree_get_point_count() const { return points.size(); }
+  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    return points[i][static_cast<Eigen::Index>(axis)];
+  }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+
+/// For each node, the nearest vertex of the fields' surface.
+std::vector<Index> nearest_vertices(const Fields& fields, const Graph& graph, const Frame& frame,
+                                    const Context& context) {
+  Points cloud;
+  for (const Vec3& p : fields.surface.positions) {
+    cloud.points.push_back(
+        frame.inside(p.cast<double>() + fields.surface.origin).cast<float>());
+  }
+  if (cloud.points.empty()) throw Error("the given fields have no values");
+  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Points>,
+                                                   Points, 3, Index>;
+  const Tree tree(3, cloud);
+  std::vector<Index> result(graph.size());
+  context.for_ranges(graph.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      float distance = 0;
+      tree.knnSearch(graph.positions[i].data(), 1, &result[i], &distance);
+    }
+  });
+  return result;
+}
+
+}  // namespace
+
+OrientationField transfer_orientation(const Fields& fields, const Graph& graph, const Frame& frame,
+                                      const Context& context) {
+  const auto nearest = nearest_vertices(fields, graph, frame, context);
+  OrientationField result{fields.orientation.rosy, std::vector<Vec3>(graph.size())};
+  for (std::size_t i = 0; i < graph.size(); ++i) {
+    const Vec3 d = project_to_plane(fields.orientation.directions[nearest[i]], graph.normals[i]);
+    result.directions[i] = d.norm() > 1e-6f ? Vec3(d.normalized()) : any_tangent(graph.normals[i]);
+  }
+  return result;
+}
+
+PositionField transfer_position(const Fields& fields, const Graph& graph, const Frame& frame,
+                                const Context& context) {
+  const auto nearest = nearest_vertices(fields, graph, frame, context);
+  const OrientationField orientation = transfer_orientation(fields, graph, frame, context);
+  const PositionField& from = fields.position;
+  PositionField result;
+  result.posy = from.posy;
+  result.points.resize(graph.size());
+  std::vector<float> lengths;
+  const std::size_t count = from.edge_length.uniform() ? 1 : graph.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    lengths.push_back(static_cast<float>(from.edge_length[nearest[i]] / frame.scale));
+  }
+  result.edge_length = EdgeLength(std::move(lengths));
+  with_posy(from.posy, [&]<int S>() {
+    for (std::size_t i = 0; i < graph.size(); ++i) {
+      const Vec3 p =
+          frame.inside(from.points[nearest[i]].cast<double>() + fields.surface.origin).cast<float>();
+      const Vec3& n = graph.normals[i];
+      const PoSy<S> lattice(p - n * n.dot(p - graph.positions[i]), orientation.directions[i], n,
+                            result.edge_length[i]);
+      result.points[i] = lattice.point(lattice.round(graph.positions[i]));
+    }
+  });
+  return result;
+}
+
+}  // namespace meshgrain

@@ -1,0 +1,215 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "mesh/incidence.h"
+#include "meshgrain/finish.h"
+
+namespace meshgrain {
+namespace {
+
+/// Appends a vertex half way between others; its place on the input is that of the first.
+Index append_mean(Extraction& extraction, std::span<const Index> vertices) {
+  Mesh& mesh = extraction.mesh;
+  Vec3 sum = Vec3::Zero(), normal = Vec3::Zero();
+  for (const Index v : vertices) {
+    sum += mesh.positions[v];
+    if (!mesh.normals.empty()) normal += mesh.normals[v];
+  }
+  const Index seed = extraction.nodes[vertices[0]];
+  const auto id = static_cast<Index>(mesh.positions.size());
+  mesh.positions.push_back(sum / static_cast<float>(vertices.size()));
+  if (!mesh.normals.empty()) {
+    const float length = normal.norm();
+    mesh.normals.push_back(length > 0 ? Vec3(normal / length) : mesh.normals[vertices[0]]);
+  }
+  extraction.nodes.push_back(seed);
+  return id;
+}
+
+/// Keeps the vertices that faces use, in their order.
+void drop_unused(Extraction& extraction) {
+  Mesh& mesh = extraction.mesh;
+  std::vector<Index> rank(mesh.positions.size(), no_index);
+  for (const Index v : std::as_const(mesh.faces).corners()) rank[v] = 0;
+  Index count = 0;
+  for (Index v = 0; v < rank.size(); ++v) {
+    if (rank[v] == no_index) continue;
+    rank[v] = count;
+    mesh.positions[count] = mesh.positions[v];
+    if (!mesh.normals.empty()) mesh.normals[count] = mesh.normals[v];
+    extraction.nodes[count] = extraction.nodes[v];
+    ++count;
+  }
+  mesh.positions.resize(count);
+  if (!mesh.normals.empty()) mesh.normals.resize(count);
+  extraction.nodes.resize(count);
+  for (Index& v : mesh.faces.corners()) v = rank[v];
+}
+
+/// The undirected edges of all faces, each with the corners (positions in Faces::corners) that start
+/// it, sorted.
+struct CornerEdge {
+  Index low, high, face, corner;
+  auto key() const { return std::pair(low, high); }
+};
+
+std::vector<CornerEdge> corner_edges(const Faces& faces) {
+  std::vector<CornerEdge> edges;
+  edges.reserve(faces.corners().size());
+  for (Index f = 0; f < faces.size(); ++f) {
+    const auto face = faces[f];
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const Index a = face[k], b = face[(k + 1) % face.size()];
+      edges.push_back({std::min(a, b), std::max(a, b), f, static_cast<Index>(faces.first(f) + k)});
+    }
+  }
+  std::sort(edges.begin(), edges.end(), [](const CornerEdge& a, const CornerEdge& b) {
+    return std::tie(a.low, a.high, a.corner) < std::tie(b.low, b.high, b.corner);
+  });
+  return edges;
+}
+
+}  // namespace
+
+void split_into_quads(Extraction& extraction) {
+  Mesh& mesh = extraction.mesh;
+  const Faces faces = std::move(mesh.faces);
+  std::vector<Index> middle(faces.corners().size());  // of the edge that starts at each corner
+  const auto edges = corner_edges(faces);
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    if (e > 0 && edges[e].key() == edges[e - 1].key()) {
+      middle[edges[e].corner] = middle[edges[e - 1].corner];
+    } else {
+      const Index ends[2] = {edges[e].low, edges[e].high};
+      middle[edges[e].corner] = append_mean(extraction, ends);
+    }
+  }
+  mesh.faces = Faces();
+  mesh.faces.reserve(faces.corners().size(), 4 * faces.corners().size());
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const auto face = faces[f];
+    const Index center = append_mean(extraction, face);
+    const std::size_t first = faces.first(f), n = face.size();
+    for (std::size_t k = 0; k < n; ++k) {
+      mesh.faces.push_back(
+          {face[k], middle[first + k], center, middle[first + (k + n - 1) % n]});
+    }
+  }
+}
+
+void take_dual(Extraction& extraction) {
+  const Mesh& mesh = extraction.mesh;
+  Extraction dual;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto face = mesh.faces[f];
+    Vec3 sum = Vec3::Zero(), normal = Vec3::Zero();
+    for (const Index v : face) {
+      sum += mesh.positions[v];
+      if (!mesh.normals.empty()) normal += mesh.normals[v];
+    }
+    dual.mesh.positions.push_back(sum / static_cast<float>(face.size()));
+    if (!mesh.normals.empty()) {
+      const float length = normal.norm();
+      dual.mesh.normals.push_back(length > 0 ? Vec3(normal / length) : mesh.normals[face[0]]);
+    }
+    dual.nodes.push_back(extraction.nodes[face[0]]);
+  }
+  const Incidence around = incident_faces(mesh.faces, mesh.positions.size());
+  std::vector<Index> ring;
+  for (Index v = 0; v < mesh.positions.size(); ++v) {
+    // Walk around the vertex: after face f comes the one that has f's edge into v as its edge out.
+    const auto corner = [&](Index f) {
+      const auto face = mesh.faces[f];
+      return static_cast<std::size_t>(std::find(face.begin(), face.end(), v) - face.begin());
+    };
+    const auto next_of = [&](Index f) {
+      const auto face = mesh.faces[f];
+      const Index from = face[(corner(f) + face.size() - 1) % face.size()];
+      for (const Index g : around[v]) {
+        const auto other = mesh.faces[g];
+        if (other[(corner(g) + 1) % other.size()] == from) return g;
+      }
+      return no_index;
+    };
+    if (around[v].size() < 3) continue;
+    ring.clear();
+    Index f = around[v][0];
+    do {
+      ring.push_back(f);
+      f = next_of(f);
+    } while (f != no_index && f != ring[0] && ring.size() <= around[v].size());
+    if (f == ring[0] && ring.size() == around[v].size()) dual.mesh.faces.push_back(ring);
+  }
+  dual.mesh.origin = mesh.origin;
+  extraction = std::move(dual);
+  drop_unused(extraction);
+}
+
+std::size_t make_manifold(Extraction& extraction) {
+  Mesh& mesh = extraction.mesh;
+  // Faces are let in one after the other; one that meets an edge already used in its direction would
+  // be the third on it, or turned over.
+  std::map<std::pair<Index, Index>, Index> used;  // directed edge -> face
+  Faces kept;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto face = std::as_const(mesh.faces)[f];
+    const std::size_t n = face.size();
+    bool free = true;
+    for (std::size_t k = 0; k < n && free; ++k) free = !used.contains({face[k], face[(k + 1) % n]});
+    if (!free) continue;
+    for (std::size_t k = 0; k < n; ++k) {
+      used[{face[k], face[(k + 1) % n]}] = static_cast<Index>(kept.size());
+    }
+    kept.push_back(face);
+  }
+  const std::size_t dropped = mesh.faces.size() - kept.size();
+  mesh.faces = std::move(kept);
+
+  // One vertex a fan: faces around a vertex that share an edge there belong to the same.
+  const std::size_t vertices = mesh.positions.size();
+  const Incidence around = incident_faces(mesh.faces, vertices);
+  std::vector<Index> fan;
+  for (Index v = 0; v < vertices; ++v) {
+    const auto faces = around[v];
+    fan.resize(faces.size());
+    std::iota(fan.begin(), fan.end(), Index{0});
+    const auto find = [&](Index i) {
+      while (fan[i] != i) i = fan[i];
+      return i;
+    };
+    const auto spokes = [&](Index f) {
+      const auto face = std::as_const(mesh.faces)[f];
+      const auto k = static_cast<std::size_t>(std::find(face.begin(), face.end(), v) - face.begin());
+      return std::pair(face[(k + 1) % face.size()], face[(k + face.size() - 1) % face.size()]);
+    };
+    for (Index a = 0; a < faces.size(); ++a) {
+      for (Index b = 0; b < a; ++b) {
+        const auto [a1, a2] = spokes(faces[a]);
+        const auto [b1, b2] = spokes(faces[b]);
+        if (a1 == b2 || a2 == b1) fan[find(a)] = find(b);
+      }
+    }
+    std::vector<std::pair<Index, Index>> copies;  // fan -> vertex
+    for (Index a = 0; a < faces.size(); ++a) {
+      const Index root = find(a);
+      if (root == find(0)) continue;
+      auto it = std::find_if(copies.begin(), copies.end(),
+                             [&](const auto& copy) { return copy.first == root; });
+      if (it == copies.end()) {
+        const Index self[1] = {v};
+        copies.emplace_back(root, append_mean(extraction, self));
+        it = copies.end() - 1;
+      }
+      for (Index& corner : mesh.faces[faces[a]]) {
+        if (corner == v) corner = it->second;
+      }
+    }
+  }
+  drop_unused(extraction);
+  return dropped;
+}
+
+}  // namespace meshgrain

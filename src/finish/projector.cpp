@@ -1,0 +1,150 @@
+#include "finish/projector.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "util/triangle.h"
+
+namespace meshgrain {
+
+Projector::Projector(const Mesh& surface, const Graph& graph)
+    : surface_(surface),
+      graph_(graph),
+      around_(surface.is_point_cloud() ? Incidence{}
+                                       : incident_faces(surface.faces, surface.positions.size())) {
+}
+
+Vec3 Projector::nearest_around(const Vec3& p, Index vertex, Index& nearest_corner) const {
+  Vec3 best = surface_.positions[vertex];
+  float best_distance = (p - best).squaredNorm();
+  nearest_corner = vertex;
+  for (const Index f : around_[vertex]) {
+    const auto face = surface_.faces[f];
+    const Vec3 q = closest_point_on_triangle<Vec3>(p, surface_.positions[face[0]],
+                                                   surface_.positions[face[1]],
+                                                   surface_.positions[face[2]]);
+    const float distance = (p - q).squaredNorm();
+    if (distance >= best_distance) continue;
+    best_distance = distance;
+    best = q;
+    nearest_corner = face[0];
+    for (const Index v : face) {
+      if ((surface_.positions[v] - q).squaredNorm() <
+          (surface_.positions[nearest_corner] - q).squaredNorm()) {
+        nearest_corner = v;
+      }
+    }
+  }
+  return best;
+}
+
+Vec3 Projector::project(const Vec3& p, Index& seed) const {
+  if (surface_.is_point_cloud()) return project_on_cloud(p, seed);
+  Index corner = seed;
+  Vec3 best = nearest_around(p, seed, corner);
+  while (corner != seed) {
+    Index next = corner;
+    const Vec3 q = nearest_around(p, corner, next);
+    if ((p - q).squaredNorm() > (p - best).squaredNorm()) break;
+    const bool nearer = (p - q).squaredNorm() < (p - best).squaredNorm();
+    seed = corner;
+    best = q;
+    if (!nearer) break;
+    corner = next;
+  }
+  return best;
+}
+
+Vec3 Projector::project_on_cloud(const Vec3& p, Index& seed) const {
+  float best = (graph_.positions[seed] - p).squaredNorm();
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (const Index j : graph_.neighbors_of(seed)) {
+      const float distance = (graph_.positions[j] - p).squaredNorm();
+      if (distance < best) {
+        best = distance;
+        seed = j;
+        moved = true;
+      }
+    }
+  }
+  // The tangent planes around, nearer ones counting more: smoother than the points themselves.
+  float scale = 1e-30f;
+  for (const Index j : graph_.neighbors_of(seed)) {
+    scale = std::max(scale, (graph_.positions[j] - graph_.positions[seed]).squaredNorm());
+  }
+  Vec3 normal = Vec3::Zero(), center = Vec3::Zero();
+  float total = 0;
+  const auto add = [&](Index j) {
+    const float w = std::exp(-3 * (graph_.positions[j] - p).squaredNorm() / scale);
+    normal += w * graph_.normals[j];
+    center += w * graph_.positions[j];
+    total += w;
+  };
+  add(seed);
+  for (const Index j : graph_.neighbors_of(seed)) add(j);
+  const float length = normal.norm();
+  if (!(total > 1e-20f) || !(length > 1e-6f * total)) return graph_.positions[seed];
+  normal /= length;
+  return p - normal * normal.dot(p - center / total);
+}
+
+BorderLine::BorderLine(const Mesh& surface, std::span<const std::array<Index, 2>> edges)
+    : surface_(surface) {
+  if (edges.empty()) return;
+  neighbors_.assign(surface.positions.size(), {no_index, no_index});
+  corner_.assign(surface.positions.size(), 0);
+  for (const auto& edge : edges) {
+    for (int side = 0; side < 2; ++side) {
+      auto& list = neighbors_[edge[side]];
+      if (list[0] == no_index) {
+        border_.push_back(edge[side]);
+        list[0] = edge[1 - side];
+      } else if (list[1] == no_index) {
+        list[1] = edge[1 - side];
+      } else {
+        corner_[edge[side]] = 1;  // several borders meet
+      }
+    }
+  }
+  for (const Index v : border_) {
+    if (neighbors_[v][1] == no_index) {
+      corner_[v] = 1;
+      neighbors_[v][1] = neighbors_[v][0];
+      continue;
+    }
+    const Vec3 in = surface.positions[v] - surface.positions[neighbors_[v][0]];
+    const Vec3 out = surface.positions[neighbors_[v][1]] - surface.positions[v];
+    constexpr float cos40 = 0.766f;
+    if (in.dot(out) < cos40 * in.norm() * out.norm()) corner_[v] = 1;
+  }
+}
+
+Vec3 BorderLine::project(const Vec3& p, Index& seed) const {
+  const auto nearest_at = [&](Index v, Index& end) {
+    Vec3 best = surface_.positions[v];
+    for (const Index w : neighbors_[v]) {
+      const Vec3 q =
+          closest_point_on_segment<Vec3>(p, surface_.positions[v], surface_.positions[w]);
+      if ((q - p).squaredNorm() < (best - p).squaredNorm()) {
+        best = q;
+        end = w;
+      }
+    }
+    return best;
+  };
+  Index next = seed;
+  Vec3 best = nearest_at(seed, next);
+  // Step on while the far end of the nearest segment leads nearer still.
+  while (next != seed) {
+    Index further = next;
+    const Vec3 q = nearest_at(next, further);
+    if (!((q - p).squaredNorm() < (best - p).squaredNorm())) break;
+    best = q;
+    seed = next;
+    next = further;
+  }
+  return best;
+}
+
+}  // namespace meshgrain

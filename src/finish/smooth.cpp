@@ -1,0 +1,186 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <utility>
+
+#include "finish/projector.h"
+#include "mesh/border.h"
+#include "mesh/incidence.h"
+#include "meshgrain/finish.h"
+
+namespace meshgrain {
+namespace {
+
+/// For every corner of a face, its place in the regular polygon that fits the face best: the face in
+/// its mean plane as complex numbers, of which the first Fourier coefficient is that polygon
+/// (in the least-squares sense, with free size and turn).
+void regular_targets(std::span<const Index> face, const std::vector<Vec3>& positions,
+                     std::span<Vec3> targets) {
+  const std::size_t n = face.size();
+  Vec3 center = Vec3::Zero(), normal = Vec3::Zero();
+  for (const Index v : face) center += positions[v];
+  center /= static_cast<float>(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    normal += (positions[face[k]] - center).cross(positions[face[(k + 1) % n]] - center);
+  }
+  const float length = normal.norm();
+  if (!(length > 0)) {
+    std::fill(targets.begin(), targets.end(), center);
+    return;
+  }
+  normal /= length;
+  Vec3 x = positions[face[0]] - center;
+  x -= normal * normal.dot(x);
+  if (!(x.norm() > 0)) x = normal.unitOrthogonal();
+  x.normalize();
+  const Vec3 y = normal.cross(x);
+  const float step = 2 * std::numbers::pi_v<float> / static_cast<float>(n);
+  std::complex<float> coefficient = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vec3 d = positions[face[k]] - center;
+    coefficient += std::complex<float>(d.dot(x), d.dot(y)) *
+                   std::polar(1.0f, -step * static_cast<float>(k));
+  }
+  coefficient /= static_cast<float>(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto z = coefficient * std::polar(1.0f, step * static_cast<float>(k));
+    targets[k] = center + z.real() * x + z.imag() * y;
+  }
+}
+
+/// Which vertices of the output lie on its border, and where on the input's border they slide.
+struct Rail {
+  std::vector<Index> seed;  // a vertex of the input's border, or no_index for inner vertices
+  std::vector<std::uint8_t> fixed;
+};
+
+Rail attach_to_border(const Extraction& extraction, const Mesh& surface, const BorderLine& border) {
+  const Mesh& mesh = extraction.mesh;
+  Rail rail;
+  rail.seed.assign(mesh.positions.size(), no_index);
+  rail.fixed.assign(mesh.positions.size(), 0);
+  const auto edges = border_edges(mesh);
+  float mean = 0;
+  for (const auto& [a, b] : edges) {
+    rail.fixed[a] = rail.fixed[b] = 1;  // without a border of the input nearby they stay
+    mean += (mesh.positions[a] - mesh.positions[b]).norm();
+  }
+  if (edges.empty() || border.empty()) return rail;
+  mean /= static_cast<float>(edges.size());
+
+  // Nearest vertices of the input's border, by a grid of cells as wide as an output edge.
+  const float cell = std::max(mean, 1e-30f);
+  const auto key = [&](const Vec3& p, int dx, int dy, int dz) {
+    const Vec3 c = p / cell;
+    return std::array<int, 3>{static_cast<int>(std::floor(c.x())) + dx,
+                              static_cast<int>(std::floor(c.y())) + dy,
+                              static_cast<int>(std::floor(c.z())) + dz};
+  };
+  std::vector<std::pair<std::array<int, 3>, Index>> grid;
+  for (const Index v : border.vertices()) grid.emplace_back(key(surface.positions[v], 0, 0, 0), v);
+  std::sort(grid.begin(), grid.end());
+  const auto for_near = [&](const Vec3& p, const auto& body) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dz = -1; dz <= 1; ++dz) {
+          const auto k = key(p, dx, dy, dz);
+          auto it = std::lower_bound(grid.begin(), grid.end(), std::make_pair(k, Index{0}));
+          for (; it != grid.end() && it->first == k; ++it) body(it->second);
+        }
+      }
+    }
+  };
+  std::vector<Index> owner(surface.positions.size(), no_index);
+  for (Index v = 0; v < mesh.positions.size(); ++v) {
+    if (!rail.fixed[v]) continue;
+    const Vec3& p = mesh.positions[v];
+    float best = cell * cell, best_corner = best;
+    Index corner = no_index;
+    for_near(p, [&](Index b) {
+      const float distance = (surface.positions[b] - p).squaredNorm();
+      if (distance < best) {
+        best = distance;
+        rail.seed[v] = b;
+      }
+      if (border.is_corner(b) && distance < best_corner) {
+        best_corner = distance;
+        corner = b;
+      }
+    });
+    if (rail.seed[v] == no_index) continue;
+    rail.fixed[v] = 0;
+    if (corner == no_index) continue;
+    // The nearest output vertex of each corner takes its place.
+    Index& nearest = owner[corner];
+    if (nearest == no_index || (mesh.positions[nearest] - surface.positions[corner]).squaredNorm() >
+                                   (p - surface.positions[corner]).squaredNorm()) {
+      nearest = v;
+    }
+  }
+  for (const Index b : border.vertices()) {
+    if (owner[b] == no_index) continue;
+    rail.fixed[owner[b]] = 1;
+    rail.seed[owner[b]] = b;
+  }
+  return rail;
+}
+
+}  // namespace
+
+void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
+            const SmoothOptions& options, const Context& context) {
+  constexpr std::size_t grain = 1024;
+  Mesh& mesh = extraction.mesh;
+  std::vector<Index>& seeds = extraction.nodes;
+  const Projector projector(surface, graph);
+  const BorderLine border(surface, border_edges(surface));
+  Rail rail = attach_to_border(extraction, surface, border);
+  const Incidence around = incident_faces(mesh.faces, mesh.positions.size());
+
+  const auto place = [&](const Vec3& p, std::size_t v) -> Vec3 {
+    if (rail.seed[v] != no_index) {
+      return rail.fixed[v] ? surface.positions[rail.seed[v]] : border.project(p, rail.seed[v]);
+    }
+    return rail.fixed[v] ? mesh.positions[v] : projector.project(p, seeds[v]);
+  };
+
+  std::vector<Vec3> targets(mesh.faces.corners().size());
+  std::vector<Vec3> next(mesh.positions.size());
+  const std::size_t n = mesh.positions.size();
+  for (int iteration = 0; iteration <= options.iterations; ++iteration) {
+    context.progress("smoothing", (iteration + 0.5) / (options.iterations + 1.0));
+    if (iteration == 0) {
+      // First of all onto the surface.
+      context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) next[v] = place(mesh.positions[v], v);
+      });
+      mesh.positions.swap(next);
+      continue;
+    }
+    context.for_ranges(mesh.faces.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t f = begin; f < end; ++f) {
+        regular_targets(std::as_const(mesh.faces)[f], mesh.positions,
+                        {targets.data() + mesh.faces.first(f), mesh.faces.degree(f)});
+      }
+    });
+    context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        Vec3 sum = Vec3::Zero();
+        for (const Index f : around[v]) {
+          const auto face = std::as_const(mesh.faces)[f];
+          for (std::size_t k = 0; k < face.size(); ++k) {
+            if (face[k] == v) sum += targets[mesh.faces.first(f) + k];
+          }
+        }
+        const auto count = static_cast<float>(around[v].size());
+        next[v] = place(count > 0 ? Vec3(sum / count) : mesh.positions[v], v);
+      }
+    });
+    mesh.positions.swap(next);
+  }
+}
+
+}  // namespace meshgrain
