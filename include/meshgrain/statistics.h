@@ -2,25 +2,35 @@
 
 #include <cstddef>
 
+#include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
 
 namespace meshgrain {
 
 /// The columns of the paper's Table 1 and what else tells a good mesh. Areas are relative to the
-/// mean area, angles in degrees.
+/// mean area, angles in degrees. A face that is not flat has the least of the areas of its
+/// triangulations (all of a quad's, a larger polygon's fan), and its angles are those between its
+/// edges, above 180 where a corner of a quad or polygon is reflex.
 struct MeshStatistics {
+  /// All vertices, isolated ones too; faces by their number of corners.
   std::size_t vertices = 0, faces = 0, triangles = 0, quads = 0, larger = 0;
-  std::size_t irregular_vertices = 0;  ///< Interior; regular is 6 neighbours if triangles prevail, else 4.
-  std::size_t singularities = 0;       ///< Irregular vertices and faces other than the ideal one.
+  /// Not on a border and without the regular number of neighbours: 6 if more than 90 % of the faces
+  /// are triangles, else 4.
+  std::size_t irregular_vertices = 0;
+  /// Irregular vertices, and faces other than the prevailing kind: each polygon counts as the
+  /// irregular vertex that it becomes where the mesh is subdivided into quads.
+  std::size_t singularities = 0;
   double area_sigma = 0, area_min = 0, area_max = 0;
   double angle_sigma = 0;  ///< About the regular polygon's angle of each face.
   double angle_min = 0, angle_max = 0;
   double angle_min_mean = 0, angle_max_mean = 0;  ///< Means of each face's least and most angle.
   double edge_mean = 0, edge_sigma = 0;           ///< In input units; relative to the mean.
-  std::size_t inverted_quads = 0;
+  std::size_t inverted_quads = 0;                 ///< With a corner of 180 degrees or more.
   std::size_t components = 0, boundary_loops = 0;
-  std::size_t non_manifold_edges = 0, non_manifold_vertices = 0, isolated_vertices = 0;
-  long euler = 0;
+  std::size_t non_manifold_edges = 0;     ///< With more than two faces.
+  std::size_t non_manifold_vertices = 0;  ///< Whose faces are more than one fan.
+  std::size_t isolated_vertices = 0;      ///< Without a face; in no number but `vertices`.
+  long euler = 0;                         ///< Vertices (but isolated ones) - edges + faces.
 };
 
 MeshStatistics mesh_statistics(const Mesh& mesh);
@@ -30,10 +40,12 @@ struct SurfaceDistance {
   double mean = 0, max = 0;
 };
 
-/// Of `samples` area-uniform points of `from` (its vertices if it is a point cloud) to the nearest
-/// point of `to`, divided by `reference_length` (the input's bounding-box diagonal, by custom).
+/// Of `samples` area-uniform points of `from` (of a point cloud: at most so many of its vertices)
+/// to the nearest point of `to`, divided by `reference_length` (the input's bounding-box diagonal,
+/// by custom). Both origins are taken into account. Throws Error if a mesh is empty or the
+/// reference length is not positive.
 SurfaceDistance surface_distance(const Mesh& from, const Mesh& to, double reference_length,
-                                 std::size_t samples = 100000);
+                                 std::size_t samples = 100000, const Context& context = Context());
 
 /// Length of the diagonal of the bounding box of the vertices that faces use (all, for a cloud).
 double bounding_diagonal(const Mesh& mesh);

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "meshgrain/mesh.h"
+
+namespace meshgrain {
+
+/// An edge of a polygon mesh and how many face sides run along it.
+struct Edge {
+  Index a, b;  ///< a < b
+  Index uses;  ///< 1 on a border, more than 2 where the mesh is not manifold
+};
+
+/// Every edge once, ordered by `a`, then `b`. Sides from a vertex to itself are left out. Linear
+/// time for bounded valence.
+std::vector<Edge> edges_of(const Mesh& mesh);
+
+/// What a quality measure asks of a vertex.
+struct VertexDegrees {
+  std::vector<Index> neighbours;     ///< Number of edges at each vertex.
+  std::vector<std::uint8_t> border;  ///< 1 where an edge does not have exactly two faces.
+  Index regular = 4;                 ///< Neighbours of a regular vertex: 6 if triangles prevail.
+
+  /// Whether `v` is an interior vertex without the regular number of neighbours.
+  bool irregular(std::size_t v) const {
+    return !border[v] && neighbours[v] != 0 && neighbours[v] != regular;
+  }
+};
+
+VertexDegrees vertex_degrees(const Mesh& mesh, const std::vector<Edge>& edges);
+
+/// Whether more than 90 % of the faces are triangles.
+bool triangles_prevail(const Faces& faces);
+
+}  // namespace meshgrain

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "meshgrain/mesh.h"
+
+namespace meshgrain {
+
+using Triangle = std::array<Index, 3>;
+
+/// The faces as triangles, in their order: a quad along the diagonal whose two triangles face the
+/// same side, the shorter one if both do; a larger polygon as a fan from its first corner. Empty
+/// for a point cloud.
+std::vector<Triangle> triangles_of(const Mesh& mesh);
+
+}  // namespace meshgrain

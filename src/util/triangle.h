@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "meshgrain/mesh.h"
+
+namespace meshgrain {
+
+/// The point of the segment from a to b closest to p.
+template <class Vector>
+Vector closest_point_on_segment(const Vector& p, const Vector& a, const Vector& b) {
+  using Scalar = typename Vector::Scalar;
+  const Vector d = b - a;
+  const Scalar length2 = d.squaredNorm();
+  if (!(length2 > 0)) return a;
+  return a + std::clamp(d.dot(p - a) / length2, Scalar(0), Scalar(1)) * d;
+}
+
+/// The point of the triangle a, b, c closest to p. A triangle that has collapsed to a segment or a
+/// point counts as that.
+template <class Vector>
+Vector closest_point_on_triangle(const Vector& p, const Vector& a, const Vector& b,
+                                 const Vector& c) {
+  using Scalar = typename Vector::Scalar;
+  const Vector ab = b - a, ac = c - a, ap = p - a;
+  const Vector n = ab.cross(ac);
+  const Scalar n2 = n.squaredNorm();
+  const Scalar longest2 = std::max(ab.squaredNorm(), ac.squaredNorm());
+  constexpr Scalar tiny = 16 * Eigen::NumTraits<Scalar>::epsilon();
+  if (n2 > tiny * tiny * longest2 * longest2) {
+    // The barycentric coordinates of p's foot on the plane: inside if none is negative.
+    const Scalar v = ap.cross(ac).dot(n), w = ab.cross(ap).dot(n);
+    if (v >= 0 && w >= 0 && v + w <= n2) return a + (v / n2) * ab + (w / n2) * ac;
+  }
+  // Else the closest point lies on an edge.
+  Vector best = closest_point_on_segment(p, a, b);
+  for (const Vector& q : {closest_point_on_segment(p, b, c), closest_point_on_segment(p, c, a)})
+    if ((q - p).squaredNorm() < (best - p).squaredNorm()) best = q;
+  return best;
+}
+
+/// The same for the expressions that Eigen's operators give.
+inline Vec3 closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  return closest_point_on_triangle<Vec3>(p, a, b, c);
+}
+
+}  // namespace meshgrain
