@@ -4,7 +4,7 @@
 #include <numeric>
 #include <utility>
 
-#include "mesh/incidence.h"
+#include "mesh/vertex_faces.h"
 #include "meshgrain/finish.h"
 
 namespace meshgrain {
@@ -117,7 +117,7 @@ void take_dual(Extraction& extraction) {
     }
     dual.nodes.push_back(extraction.nodes[face[0]]);
   }
-  const Incidence around = incident_faces(mesh.faces, mesh.positions.size());
+  const VertexFaces around = vertex_faces(mesh);
   std::vector<Index> ring;
   for (Index v = 0; v < mesh.positions.size(); ++v) {
     // Walk around the vertex: after face f comes the one that has f's edge into v as its edge out.
@@ -170,7 +170,7 @@ std::size_t make_manifold(Extraction& extraction) {
 
   // One vertex a fan: faces around a vertex that share an edge there belong to the same.
   const std::size_t vertices = mesh.positions.size();
-  const Incidence around = incident_faces(mesh.faces, vertices);
+  const VertexFaces around = vertex_faces(mesh);
   std::vector<Index> fan;
   for (Index v = 0; v < vertices; ++v) {
     const auto faces = around[v];

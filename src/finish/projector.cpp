@@ -10,8 +10,8 @@ namespace meshgrain {
 Projector::Projector(const Mesh& surface, const Graph& graph)
     : surface_(surface),
       graph_(graph),
-      around_(surface.is_point_cloud() ? Incidence{}
-                                       : incident_faces(surface.faces, surface.positions.size())) {
+      around_(surface.is_point_cloud() ? VertexFaces{}
+                                       : vertex_faces(surface)) {
 }
 
 Vec3 Projector::nearest_around(const Vec3& p, Index vertex, Index& nearest_corner) const {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "mesh/incidence.h"
+#include "mesh/vertex_faces.h"
 #include "meshgrain/graph.h"
 
 namespace meshgrain {
@@ -25,7 +25,7 @@ class Projector {
 
   const Mesh& surface_;
   const Graph& graph_;
-  Incidence around_;
+  VertexFaces around_;
 };
 
 /// The border of a triangle mesh as polylines, to slide along.

@@ -8,7 +8,7 @@
 
 #include "finish/projector.h"
 #include "mesh/border.h"
-#include "mesh/incidence.h"
+#include "mesh/vertex_faces.h"
 #include "meshgrain/finish.h"
 
 namespace meshgrain {
@@ -138,7 +138,7 @@ void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
   const Projector projector(surface, graph);
   const BorderLine border(surface, border_edges(surface));
   Rail rail = attach_to_border(extraction, surface, border);
-  const Incidence around = incident_faces(mesh.faces, mesh.positions.size());
+  const VertexFaces around = vertex_faces(mesh);
 
   const auto place = [&](const Vec3& p, std::size_t v) -> Vec3 {
     if (rail.seed[v] != no_index) {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "graph/nearest_neighbors.h"
-#include "mesh/incidence.h"
+#include "mesh/vertex_faces.h"
 #include "meshgrain/error.h"
 #include "meshgrain/normals.h"
 
@@ -69,7 +69,7 @@ Graph vertex_graph(const Mesh& mesh, const GraphOptions& options, const Context&
   Graph graph;
   graph.positions = mesh.positions;
   graph.normals = vertex_normals(mesh, options.crease_degrees, context);
-  const Incidence around = incident_faces(mesh.faces, mesh.positions.size());
+  const VertexFaces around = vertex_faces(mesh);
   gather_neighbors(
       graph,
       [&](Index v, std::vector<Index>& out) {
@@ -132,7 +132,7 @@ Graph face_graph(const Mesh& mesh, const Context& context) {
     graph.areas[f] = 0.5f * twice_area;
     graph.normals[f] = twice_area > 0 ? Vec3(normal / twice_area) : Vec3::UnitZ();
   }
-  const Incidence around = incident_faces(mesh.faces, mesh.positions.size());
+  const VertexFaces around = vertex_faces(mesh);
   gather_neighbors(
       graph,
       [&](Index f, std::vector<Index>& out) {

@@ -1,11 +1,11 @@
 #include "mesh/border.h"
 
-#include "mesh/incidence.h"
+#include "mesh/vertex_faces.h"
 
 namespace meshgrain {
 
 std::vector<std::array<Index, 2>> border_edges(const Mesh& mesh) {
-  const Incidence around = incident_faces(mesh.faces, mesh.positions.size());
+  const VertexFaces around = vertex_faces(mesh);
   // How many faces around `a` have the edge between a and b, in either direction.
   const auto uses = [&](Index a, Index b) {
     int count = 0;

@@ -2,7 +2,7 @@
 #include <array>
 #include <utility>
 
-#include "mesh/incidence.h"
+#include "mesh/vertex_faces.h"
 #include "meshgrain/error.h"
 #include "meshgrain/surface.h"
 
@@ -24,7 +24,7 @@ struct Midpoints {
 };
 
 Midpoints long_edges(const Mesh& mesh, float max_length) {
-  const Incidence around = incident_faces(mesh.faces, mesh.positions.size());
+  const VertexFaces around = vertex_faces(mesh);
   const float limit = max_length * max_length;
   Midpoints result;
   result.offsets.reserve(mesh.positions.size() + 1);

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+
+#include "meshgrain/mesh.h"
+
+namespace meshgrain {
+
+/// What clean() took out.
+struct CleanReport {
+  std::size_t repeated_corners = 0;  ///< Corners equal to the one before them in their face.
+  std::size_t degenerate_faces = 0;  ///< Fewer than three corners, or one vertex in two places.
+  std::size_t duplicate_faces =
+      0;  ///< The corners of an earlier face, in the same or reverse order.
+  std::size_t unused_vertices = 0;   ///< Of no face that is left.
+  std::size_t duplicate_points = 0;  ///< Point clouds only: at the position of an earlier point.
+
+  bool any() const {
+    return repeated_corners + degenerate_faces + duplicate_faces + unused_vertices +
+               duplicate_points >
+           0;
+  }
+};
+
+/// Removes, in linear time, what carries no surface, and says how much there was of it. The order
+/// of what is left stays, and normals and values follow their vertices. Does not weld vertices.
+CleanReport clean(Mesh& mesh);
+
+}  // namespace meshgrain

@@ -1,0 +1,94 @@
+#include "meshgrain/clean.h"
+
+#include <gtest/gtest.h>
+
+namespace meshgrain {
+namespace {
+
+Mesh vertices(int count) {
+  Mesh mesh;
+  for (int i = 0; i < count; ++i) {
+    mesh.positions.emplace_back(i, i * i, 0);
+    mesh.values.push_back(static_cast<float>(i));
+  }
+  return mesh;
+}
+
+TEST(Clean, LeavesACleanMeshAlone) {
+  Mesh mesh = vertices(4);
+  mesh.faces.push_back({0, 1, 2});
+  mesh.faces.push_back({2, 1, 3});
+  EXPECT_FALSE(clean(mesh).any());
+  EXPECT_EQ(mesh.positions.size(), 4u);
+  EXPECT_EQ(mesh.faces.size(), 2u);
+}
+
+TEST(Clean, RemovesRepeatedCorners) {
+  Mesh mesh = vertices(4);
+  mesh.faces.push_back({0, 1, 1, 2, 3, 0});
+  const CleanReport report = clean(mesh);
+  EXPECT_EQ(report.repeated_corners, 2u);
+  EXPECT_EQ(report.degenerate_faces, 0u);
+  ASSERT_EQ(mesh.faces.degree(0), 4u);
+  EXPECT_EQ(mesh.faces[0][1], 1u);
+  EXPECT_EQ(mesh.faces[0][2], 2u);
+}
+
+TEST(Clean, RemovesDegenerateFaces) {
+  Mesh mesh = vertices(5);
+  mesh.faces.push_back({0, 1, 0});
+  mesh.faces.push_back({1, 2});
+  mesh.faces.push_back({0, 1, 2, 1});
+  mesh.faces.push_back({3, 3, 3});
+  mesh.faces.push_back({0, 1, 2});
+  const CleanReport report = clean(mesh);
+  EXPECT_EQ(report.degenerate_faces, 4u);
+  EXPECT_EQ(report.unused_vertices, 2u);
+  EXPECT_EQ(mesh.faces.size(), 1u);
+  EXPECT_EQ(mesh.positions.size(), 3u);
+}
+
+TEST(Clean, RemovesDuplicateFacesInAnyRotationAndDirection) {
+  Mesh mesh = vertices(5);
+  mesh.faces.push_back({0, 1, 2, 3});
+  mesh.faces.push_back({2, 3, 0, 1});
+  mesh.faces.push_back({3, 2, 1, 0});
+  mesh.faces.push_back({0, 2, 1, 3});  // the same vertices, another quad
+  mesh.faces.push_back({0, 1, 2});
+  mesh.faces.push_back({1, 0, 2});
+  mesh.faces.push_back({2, 3, 4});
+  const CleanReport report = clean(mesh);
+  EXPECT_EQ(report.duplicate_faces, 3u);
+  ASSERT_EQ(mesh.faces.size(), 4u);
+  EXPECT_EQ(mesh.faces[1][1], 2u);
+  EXPECT_EQ(mesh.faces[3][2], 4u);
+}
+
+TEST(Clean, AttributesFollowTheirVertices) {
+  Mesh mesh = vertices(6);
+  mesh.faces.push_back({1, 3, 5});
+  EXPECT_EQ(clean(mesh).unused_vertices, 3u);
+  EXPECT_EQ(mesh.values, (std::vector<float>{1, 3, 5}));
+  EXPECT_EQ(mesh.positions[2].x(), 5);
+  EXPECT_EQ(mesh.faces[0][2], 2u);
+}
+
+TEST(Clean, NothingIsLeftOfOnlyDegenerateFaces) {
+  Mesh mesh = vertices(3);
+  mesh.faces.push_back({0, 1, 1});
+  clean(mesh);
+  EXPECT_TRUE(mesh.positions.empty());
+  EXPECT_TRUE(mesh.faces.empty());
+}
+
+TEST(Clean, RemovesDuplicatePointsOfACloud) {
+  Mesh cloud = vertices(4);
+  cloud.positions[2] = cloud.positions[0];
+  cloud.positions[0].z() = -0.0f;
+  const CleanReport report = clean(cloud);
+  EXPECT_EQ(report.duplicate_points, 1u);
+  EXPECT_EQ(cloud.values, (std::vector<float>{0, 1, 3}));
+}
+
+}  // namespace
+}  // namespace meshgrain
