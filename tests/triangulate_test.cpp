@@ -137,8 +137,8 @@ TEST(Triangulate, NeighboringPolygonsDoNotShareADiagonal) {
 TEST(Triangulate, LargePolygonsTakeLittleTime) {
   Mesh mesh;
   std::vector<Index> face;
-  for (Index i = 0; i < 100000; ++i) {
-    const double angle = 2 * std::numbers::pi * i / 100000;
+  for (Index i = 0; i < 20000; ++i) {
+    const double angle = 2 * std::numbers::pi * i / 20000;
     mesh.positions.emplace_back(Eigen::Vector3d(std::cos(angle), std::sin(angle), 0).cast<float>());
     face.push_back(i);
   }

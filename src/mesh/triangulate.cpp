@@ -75,7 +75,10 @@ class EarClipper {
       corners_[i].next = (i + 1) % n;
     }
     for (std::uint32_t i = 0; i < n; ++i)
-      if (turn(i) <= 0) reflex_.push_back(i);
+      if (turn(i) <= 0) {
+        corners_[i].reflex = true;
+        reflex_.push_back(i);
+      }
   }
 
   void run(std::vector<Triangle>& triangles) {
@@ -95,6 +98,7 @@ class EarClipper {
     Vector2d place = Vector2d::Zero();  // in the mean plane
     std::uint32_t previous = 0, next = 0;
     std::uint32_t version = 0;  // counts changes of its neighbours
+    bool reflex = false;
     bool gone = false;
   };
   struct Ear {
@@ -134,14 +138,16 @@ class EarClipper {
   }
 
   /// Whether the corner is convex with no other in its triangle; only reflex ones can be the first.
-  bool is_ear(std::uint32_t i) {
+  bool is_ear(std::uint32_t i) const {
     if (turn(i) <= 0) return false;
     const Corner& c = corners_[i];
     const Vector2d &a = corners_[c.previous].place, &b = c.place, &d = corners_[c.next].place;
-    std::erase_if(reflex_, [&](std::uint32_t r) { return corners_[r].gone || turn(r) > 0; });
+    const Vector2d low = a.cwiseMin(b).cwiseMin(d), high = a.cwiseMax(b).cwiseMax(d);
     return std::none_of(reflex_.begin(), reflex_.end(), [&](std::uint32_t r) {
       const Vector2d& p = corners_[r].place;
-      if (r == c.previous || r == c.next || p == a || p == b || p == d) return false;
+      if (p.x() < low.x() || p.x() > high.x() || p.y() < low.y() || p.y() > high.y()) return false;
+      if (!corners_[r].reflex || r == c.previous || r == c.next || p == a || p == b || p == d)
+        return false;
       return cross(b - a, p - a) >= 0 && cross(d - b, p - b) >= 0 && cross(a - d, p - d) >= 0;
     });
   }
@@ -152,10 +158,18 @@ class EarClipper {
     edges_.insert(face_[c.previous], face_[c.next]);
     corners_[c.previous].next = c.next;
     corners_[c.next].previous = c.previous;
-    ++corners_[c.previous].version;
-    ++corners_[c.next].version;
     c.gone = true;
+    c.reflex = false;
     --size_;
+    for (const std::uint32_t end : {c.previous, c.next}) {
+      ++corners_[end].version;
+      // A fold may make a corner reflex that was none; what matters then is new edges, not ears.
+      corners_[end].reflex = corners_[end].reflex && turn(end) <= 0;
+    }
+    if (++clipped_ * 2 > reflex_.size()) {
+      std::erase_if(reflex_, [&](std::uint32_t r) { return !corners_[r].reflex; });
+      clipped_ = 0;
+    }
   }
 
   /// Clips all ears it finds if `ears`, else one corner; returns whether there was any.
@@ -189,7 +203,8 @@ class EarClipper {
   EdgeSet& edges_;
   std::size_t size_;  // corners that are left
   std::vector<Corner> corners_;
-  std::vector<std::uint32_t> reflex_;
+  std::vector<std::uint32_t> reflex_;  // all reflex corners, and some that no longer are
+  std::size_t clipped_ = 0;            // corners since the list was cleared of those
 };
 
 }  // namespace
