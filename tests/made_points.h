@@ -13,7 +13,7 @@ namespace meshgrain::made {
 
 /// A number in [-1, 1) that depends on the seed only.
 inline float noise(std::uint64_t seed) {
-  return static_cast<float>(mix_bits(seed + 0x9e3779b97f4a7c15u) >> 40) / 8388608.0f - 1.0f;
+  return static_cast<float>(hash64(seed + 0x9e3779b97f4a7c15u) >> 40) / 8388608.0f - 1.0f;
 }
 
 /// Points with the outward normals of the surface they were taken from.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "field/schedule.h"
+#include "field/running_share.h"
 #include "meshgrain/fields.h"
 #include "util/hash.h"
 
@@ -25,9 +26,9 @@ concept FieldKernel = requires(const K& kernel, Index i, std::size_t entry, std:
   { kernel.relax(i, field) } -> std::same_as<typename K::Value>;
   /// The paper's energy of the edges that leave node i.
   { kernel.energy(i, field) } -> std::same_as<double>;
-  /// The value of a coarser node, for its child i.
+  /// The value of a node of a neighbouring level, for node i.
   { kernel.prolong(i, value) } -> std::same_as<typename K::Value>;
-  /// The value of coarse node i, from its two children with their shares.
+  /// The mean of two values as one of node i, the first with the given share.
   { kernel.merge(i, value, value, 0.5f) } -> std::same_as<typename K::Value>;
   /// The same with integers held: those that match node i with the neighbour of an entry.
   { kernel.match(i, entry, field) } -> std::same_as<typename K::Integers>;
@@ -229,18 +230,15 @@ class Multiresolution {
     const std::size_t n = hierarchy_.levels[l + 1].size();
     held_[l + 1].resize(n);
     active_[l + 1].assign(n, 0);
-    std::vector<Index> first(n, no_index);
+    RunningShare share(n);
     for (Index i = 0; i < parents.size(); ++i) {
       const Index k = parents[i];
       active_[l + 1][k] |= active_[l][i];
-      if (first[k] == no_index) {
-        first[k] = i;
-        held_[l + 1][k] = kernels_[l + 1].merge(k, held_[l][i], held_[l][i], 1);
-      } else {
-        const float total = fine.areas[first[k]] + fine.areas[i];
-        const float share = total > 0 ? fine.areas[first[k]] / total : 0.5f;
-        held_[l + 1][k] = kernels_[l + 1].merge(k, held_[l][first[k]], held_[l][i], share);
-      }
+      const bool first = share.is_first(k);
+      const float before = share.add(k, fine.areas[i]);
+      held_[l + 1][k] =
+          first ? kernels_[l + 1].prolong(k, held_[l][i])
+                : kernels_[l + 1].merge(k, held_[l + 1][k], held_[l][i], before);
     }
   }
 

@@ -3,6 +3,7 @@
 #include "field/constraints.h"
 #include "field/multiresolution.h"
 #include "field/position_kernel.h"
+#include "field/running_share.h"
 #include "field/with_symmetry.h"
 #include "meshgrain/error.h"
 #include "meshgrain/fields.h"
@@ -24,22 +25,17 @@ std::vector<LatticeFrame> restrict_frames(const Hierarchy& hierarchy,
     std::vector<Vec3>& directions = frames[l + 1].directions;
     directions.resize(coarse.size());
     std::vector<float> lengths(edge_length.uniform() ? 0 : coarse.size());
-    std::vector<Index> first(coarse.size(), no_index);
+    RunningShare share(coarse.size());
     for (Index i = 0; i < fine.size(); ++i) {
       const Index k = hierarchy.parents[l][i];
       const Vec3& direction = frames[l].directions[i];
-      if (first[k] == no_index) {
-        first[k] = i;
-        directions[k] = kernel.prolong(k, direction);
-        if (!lengths.empty()) lengths[k] = frames[l].edge_length[i];
-        continue;
-      }
-      const float total = fine.areas[first[k]] + fine.areas[i];
-      const float share = total > 0 ? fine.areas[first[k]] / total : 0.5f;
-      directions[k] = kernel.merge(k, frames[l].directions[first[k]], direction, share);
-      if (!lengths.empty()) {
-        lengths[k] = share * lengths[k] + (1 - share) * frames[l].edge_length[i];
-      }
+      const bool first = share.is_first(k);
+      const float before = share.add(k, fine.areas[i]);
+      directions[k] = first ? kernel.prolong(k, direction)
+                            : kernel.merge(k, directions[k], direction, before);
+      if (lengths.empty()) continue;
+      const float length = frames[l].edge_length[i];
+      lengths[k] = first ? length : before * lengths[k] + (1 - before) * length;
     }
     frames[l + 1].edge_length = edge_length.uniform() ? edge_length : EdgeLength(std::move(lengths));
   }

@@ -76,11 +76,11 @@ std::vector<PositionSingularity> position_singularities(const Mesh& triangles, c
         const auto v = triangles.faces[f];
         const int posy = position.posy;
         std::array<int, 2> total{0, 0};
-        int rotation = 0;  // from the frame of the current vertex to that of the first
+        int rotation = 0;  // that turns the current vertex's frame into the first's
         for (std::size_t k = 0; k < 3; ++k) {
           const Jump jump =
               edge_jump(graph, orientation, position, energy, v[k], v[(k + 1) % 3]);
-          const auto t = rotate_jump(jump.t, rotation, posy);
+          const auto t = rotate_jump(jump.t, (posy - rotation) % posy, posy);
           total = {total[0] + t[0], total[1] + t[1]};
           rotation = (rotation + jump.rotation) % posy;
         }

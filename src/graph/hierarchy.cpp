@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "util/hash.h"
 
@@ -10,48 +11,51 @@ namespace {
 
 constexpr std::size_t grain = 2048;
 
-/// For each node the neighbour that it is merged with, or itself.
+/// The neighbour of i with the best score of section 3.5 among those that `admits`, or no_index. The
+/// score of an edge must be the same seen from both ends, and ties must be broken alike, or proposals
+/// could chase each other in circles; a hash of the edge breaks them without a pattern.
+template <typename Admits>
+Index best_neighbor(const Graph& graph, Index i, const Admits& admits) {
+  Index best = no_index;
+  float best_score = -1;
+  std::uint64_t best_hash = 0;
+  for (const Index j : graph.neighbors_of(i)) {
+    if (!admits(j)) continue;
+    const float a = graph.areas[i], b = graph.areas[j];
+    const float ratio = a < b ? a / b : b > 0 ? b / a : 1.0f;
+    const Index low = std::min(i, j), high = std::max(i, j);
+    const float score = std::max(graph.normals[low].dot(graph.normals[high]), 0.0f) * ratio;
+    if (score < best_score) continue;
+    const std::uint64_t hash = hash64(std::uint64_t{low} << 32 | high);
+    if (score > best_score || hash > best_hash) {
+      best = j;
+      best_score = score;
+      best_hash = hash;
+    }
+  }
+  return best;
+}
+
+/// For each node the neighbour that it is merged with. Where all neighbours are in pairs already, a
+/// node follows one of them and makes it three: left alone, such nodes would pile up around their
+/// larger neighbours, which always prefer each other, and the levels would hardly shrink any more.
 std::vector<Index> match_pairs(const Graph& graph, const Context& context) {
   const std::size_t n = graph.size();
-  std::vector<Index> partner(n, no_index);
-  std::vector<Index> proposal(n, no_index);
-
-  // The score of an edge must be the same seen from both ends, and ties must be broken alike, or
-  // proposals could chase each other in circles; a hash of the edge breaks them without a pattern.
-  const auto propose = [&](Index i) {
-    Index best = no_index;
-    float best_score = -1;
-    std::uint64_t best_hash = 0;
-    for (const Index j : graph.neighbors_of(i)) {
-      if (partner[j] != no_index || j == i) continue;
-      const float a = graph.areas[i], b = graph.areas[j];
-      const float ratio = a < b ? a / b : b > 0 ? b / a : 1.0f;
-      // Products in the order of the indices: the same bits from both ends.
-      const Vec3& low = graph.normals[std::min(i, j)];
-      const Vec3& high = graph.normals[std::max(i, j)];
-      const float score = std::max(low.dot(high), 0.0f) * ratio;
-      if (score < best_score) continue;
-      const std::uint64_t h = hash64(std::uint64_t{std::min(i, j)} << 32 | std::max(i, j));
-      if (score > best_score || h > best_hash) {
-        best = j;
-        best_score = score;
-        best_hash = h;
-      }
-    }
-    return best;
-  };
-
-  std::vector<Index> open(n);
+  std::vector<Index> partner(n, no_index), proposal(n, no_index);
+  std::vector<Index> open(n), alone;
   for (std::size_t i = 0; i < n; ++i) open[i] = static_cast<Index>(i);
+  const auto is_free = [&](Index j) { return partner[j] == no_index; };
   while (!open.empty()) {
     context.for_ranges(open.size(), grain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) proposal[open[k]] = propose(open[k]);
+      for (std::size_t k = begin; k < end; ++k) {
+        proposal[open[k]] = best_neighbor(graph, open[k], is_free);
+      }
     });
     std::size_t kept = 0;
     for (const Index i : open) {
       const Index j = proposal[i];
       if (j == no_index) {
-        partner[i] = i;  // no free neighbour left: moves up alone
+        alone.push_back(i);
       } else if (proposal[j] == i) {
         partner[i] = j;
       } else {
@@ -60,45 +64,75 @@ std::vector<Index> match_pairs(const Graph& graph, const Context& context) {
     }
     open.resize(kept);
   }
+  for (const Index i : alone) {
+    const Index j = best_neighbor(graph, i, [](Index) { return true; });
+    partner[i] = j == no_index ? i : j;
+  }
   return partner;
 }
 
-/// Parents are numbered in the order of their first child, which keeps the order of the curve.
-std::vector<Index> number_parents(const std::vector<Index>& partner, std::vector<Index>& first_child) {
-  std::vector<Index> parent(partner.size());
-  for (std::size_t i = 0; i < partner.size(); ++i) {
-    if (partner[i] < i) {
-      parent[i] = parent[partner[i]];
-    } else {
-      parent[i] = static_cast<Index>(first_child.size());
-      first_child.push_back(static_cast<Index>(i));
-    }
+/// The nodes of the coarser level, each with the finer nodes that it stands for. Numbered in the
+/// order of their first children, which keeps the order of the curve.
+struct Grouping {
+  std::vector<Index> parent;
+  std::vector<Index> offsets;  // coarse nodes + 1
+  std::vector<Index> children;
+
+  std::size_t size() const { return offsets.size() - 1; }
+  std::span<const Index> operator[](std::size_t k) const {
+    return {children.data() + offsets[k], offsets[k + 1] - offsets[k]};
   }
-  return parent;
+};
+
+Grouping group(const std::vector<Index>& partner) {
+  const std::size_t n = partner.size();
+  Grouping result;
+  result.parent.resize(n);
+  result.offsets.push_back(0);
+  // A node that found no free neighbour points to one that is in a pair already, in `partner`.
+  const auto leader = [&](Index i) {
+    const Index j = partner[i];
+    return partner[j] == i || partner[j] == j ? std::min(i, j) : std::min(j, partner[j]);
+  };
+  std::vector<Index> number(n, no_index);
+  for (Index i = 0; i < n; ++i) {
+    Index& k = number[leader(i)];
+    if (k == no_index) {
+      k = static_cast<Index>(result.offsets.size() - 1);
+      result.offsets.push_back(0);
+    }
+    result.parent[i] = k;
+    ++result.offsets[k + 1];
+  }
+  for (std::size_t k = 0; k < result.size(); ++k) result.offsets[k + 1] += result.offsets[k];
+  result.children.resize(n);
+  std::vector<Index> next(result.offsets.begin(), result.offsets.end() - 1);
+  for (Index i = 0; i < n; ++i) result.children[next[result.parent[i]]++] = i;
+  return result;
 }
 
-void merge_nodes(const Graph& fine, const std::vector<Index>& partner,
-                 const std::vector<Index>& first_child, Graph& coarse, const Context& context) {
-  const std::size_t n = first_child.size();
+void merge_nodes(const Graph& fine, const Grouping& groups, Graph& coarse,
+                 const Context& context) {
+  const std::size_t n = groups.size();
   coarse.positions.resize(n);
   coarse.normals.resize(n);
   coarse.areas.resize(n);
   context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      const Index a = first_child[k], b = partner[a];
-      if (a == b) {
-        coarse.positions[k] = fine.positions[a];
-        coarse.normals[k] = fine.normals[a];
-        coarse.areas[k] = fine.areas[a];
-        continue;
+      Vec3 position = Vec3::Zero(), normal = Vec3::Zero();
+      float area = 0, total = 0;
+      for (const Index i : groups[k]) {
+        const float weight = std::max(fine.areas[i], 1e-30f);
+        position += weight * fine.positions[i];
+        normal += weight * fine.normals[i];
+        area += fine.areas[i];
+        total += weight;
       }
-      const float area = fine.areas[a] + fine.areas[b];
-      const float share = area > 0 ? fine.areas[a] / area : 0.5f;
       coarse.areas[k] = area;
-      coarse.positions[k] = share * fine.positions[a] + (1 - share) * fine.positions[b];
-      const Vec3 normal = share * fine.normals[a] + (1 - share) * fine.normals[b];
+      coarse.positions[k] = position / total;
       const float length = normal.norm();
-      coarse.normals[k] = length > 1e-6f ? Vec3(normal / length) : fine.normals[a];
+      coarse.normals[k] =
+          length > 1e-6f * total ? Vec3(normal / length) : fine.normals[groups[k][0]];
     }
   });
 }
@@ -108,10 +142,9 @@ struct Neighbor {
   float weight;
 };
 
-void merge_edges(const Graph& fine, const std::vector<Index>& partner,
-                 const std::vector<Index>& parent, const std::vector<Index>& first_child,
-                 Graph& coarse, const Context& context) {
-  const std::size_t n = first_child.size();
+void merge_edges(const Graph& fine, const Grouping& groups, Graph& coarse,
+                 const Context& context) {
+  const std::size_t n = groups.size();
   coarse.offsets.assign(n + 1, 0);
   // Each range gathers its own neighbours, which then have a known place.
   std::vector<std::vector<Neighbor>> gathered((n + grain - 1) / grain);
@@ -119,14 +152,12 @@ void merge_edges(const Graph& fine, const std::vector<Index>& partner,
     auto& out = gathered[begin / grain];
     for (std::size_t k = begin; k < end; ++k) {
       const std::size_t start = out.size();
-      const auto gather = [&](Index child) {
+      for (const Index child : groups[k]) {
         for (Index e = fine.offsets[child]; e < fine.offsets[child + 1]; ++e) {
-          const Index node = parent[fine.neighbors[e]];
+          const Index node = groups.parent[fine.neighbors[e]];
           if (node != k) out.push_back({node, fine.weight(e)});
         }
-      };
-      gather(first_child[k]);
-      if (partner[first_child[k]] != first_child[k]) gather(partner[first_child[k]]);
+      }
       std::sort(out.begin() + static_cast<std::ptrdiff_t>(start), out.end(),
                 [](const Neighbor& a, const Neighbor& b) { return a.node < b.node; });
       std::size_t last = start;
@@ -165,12 +196,11 @@ Hierarchy build_hierarchy(Graph graph, const Context& context) {
   while (!hierarchy.levels.back().neighbors.empty()) {
     const Graph& fine = hierarchy.levels.back();
     const std::vector<Index> partner = match_pairs(fine, context);
-    std::vector<Index> first_child;
-    std::vector<Index> parent = number_parents(partner, first_child);
+    Grouping groups = group(partner);
     Graph coarse;
-    merge_nodes(fine, partner, first_child, coarse, context);
-    merge_edges(fine, partner, parent, first_child, coarse, context);
-    hierarchy.parents.push_back(std::move(parent));
+    merge_nodes(fine, groups, coarse, context);
+    merge_edges(fine, groups, coarse, context);
+    hierarchy.parents.push_back(std::move(groups.parent));
     hierarchy.levels.push_back(std::move(coarse));
     context.progress("hierarchy", 1.0 - static_cast<double>(hierarchy.levels.back().size()) /
                                             static_cast<double>(finest));
