@@ -95,13 +95,14 @@ void add_marks(const Mesh& mesh, const PictureOptions& options, Scene& scene) {
   if (options.edges) {
     scene.line_width = std::clamp(0.06f * mean, 0.9f, std::max(1.0f, size / 500));
     scene.line_strength = 0.8f * std::clamp((mean - 2.5f) / 4, 0.0f, 1.0f);
-    scene.border_width = std::clamp(0.16f * mean, 1.8f, std::max(2.0f, size / 220));
-    scene.border_vertex.assign(mesh.positions.size(), 0);
+    scene.border_width = std::clamp(0.14f * mean, 1.5f, std::max(2.0f, size / 300));
+    scene.border_neighbours.assign(mesh.positions.size(), {no_index, no_index});
+    const auto add = [&](Index v, Index w) {
+      auto& ends = scene.border_neighbours[v];
+      (ends[0] == no_index ? ends[0] : ends[1]) = w;
+    };
     for (const Edge& edge : edges)
-      if (edge.uses == 1) {
-        scene.border.insert(Scene::edge_key(edge.a, edge.b));
-        scene.border_vertex[edge.a] = scene.border_vertex[edge.b] = 1;
-      }
+      if (edge.uses == 1) add(edge.a, edge.b), add(edge.b, edge.a);
   }
   if (options.irregular) {
     scene.dot_radius = std::min(0.22f * mean, size / 110);
@@ -123,7 +124,7 @@ Scene make_scene(const Mesh& mesh, const PictureOptions& options, const Context&
   if (mesh.is_point_cloud()) {
     // As large as their mean distance, if they cover about half of the image evenly.
     const float size = float(std::min(options.width, options.height)) * options.zoom;
-    const float spacing = 0.8f * size / std::sqrt(float(scene.points.size()));
+    const float spacing = 0.9f * size / std::sqrt(float(scene.points.size()));
     scene.dot_radius = std::clamp(0.75f * spacing, 0.8f, size / 60);
     return scene;
   }

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <unordered_set>
 #include <vector>
 
 #include "mesh/triangles.h"
@@ -19,19 +19,15 @@ struct Scene {
   std::vector<Vec3> normals;  ///< One a triangle corner; or one a point, or none, for a cloud.
   const Faces* faces = nullptr;
 
-  std::vector<std::int8_t> irregular;        ///< Per vertex: -1 fewer neighbours, 1 more; or empty.
-  std::vector<std::uint8_t> border_vertex;   ///< Per vertex; or empty.
-  std::unordered_set<std::uint64_t> border;  ///< The keys of edges with one face.
+  std::vector<std::int8_t> irregular;  ///< Per vertex: -1 fewer neighbours, 1 more; or empty.
+  /// Per vertex: the other ends of (two of) its border edges, or no_index; or empty.
+  std::vector<std::array<Index, 2>> border_neighbours;
   bool tint_non_quads = false;
 
   float line_width = 0;     ///< 0 draws no edges.
   float line_strength = 0;  ///< Opacity of the edges: less where they are dense on the whole.
   float border_width = 0;   ///< 0 draws no borders.
   float dot_radius = 0;     ///< Of irregular vertices, and of the points of a cloud.
-
-  static std::uint64_t edge_key(Index a, Index b) {
-    return a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a;
-  }
 };
 
 Scene make_scene(const Mesh& mesh, const PictureOptions& options, const Context& context);

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "util/triangle.h"
 
@@ -31,7 +32,7 @@ void blend(Vec3& colour, const Vec3& with, float share) {
 
 /// A warm main light from the upper left, a cool fill from the right, and the sky and the ground.
 Vec3 light(const Vec3& base, const Vec3& n) {
-  static const Vec3 key = Vec3(-0.50f, -0.70f, 0.62f).normalized();
+  static const Vec3 key = Vec3(-0.42f, -0.80f, 0.56f).normalized();
   static const Vec3 fill = Vec3(0.85f, -0.05f, 0.45f).normalized();
   static const Vec3 half = (key + Vec3::UnitZ()).normalized();
   const float up = 0.5f - 0.5f * n.y();
@@ -71,22 +72,20 @@ void draw_marks(const Scene& scene, std::span<const Index> face, const Vec3& p, 
     blend(colour, ink, line * coverage(scene.line_width / 2, nearest));
   }
   if (scene.border_width > 0) {
-    // A border runs on one side only, so it takes its whole width there; its vertices round off the
-    // joints in the faces that only touch it.
+    // A border runs on one side only, so it takes its whole width there. A face that only touches
+    // the border at a vertex draws its part of the border's edges there.
     float nearest = std::numeric_limits<float>::infinity();
-    for (std::size_t k = 0; k < n; ++k) {
-      const Index v = face[k], w = face[(k + 1) % n];
-      if (!scene.border_vertex[v]) continue;
-      const Vec2 a = scene.points[v].head<2>(), b = scene.points[w].head<2>();
-      nearest = std::min(nearest, (a - place).norm());
-      if (scene.border_vertex[w] && scene.border.contains(Scene::edge_key(v, w)))
+    for (Index v : face)
+      for (Index w : scene.border_neighbours[v]) {
+        if (w == no_index) continue;
+        const Vec2 a = scene.points[v].head<2>(), b = scene.points[w].head<2>();
         nearest = std::min(nearest, (closest_point_on_segment(place, a, b) - place).norm());
-    }
+      }
     blend(colour, border_red, coverage(scene.border_width, nearest));
   }
-  const bool dots = !scene.irregular.empty() && scene.dot_radius > 1;
+  const bool dots = !scene.irregular.empty() && scene.dot_radius > 1.2f;
   if (dots) {
-    const float dot = smooth_step(1.0f, 2.0f, scene.dot_radius);
+    const float dot = smooth_step(1.2f, 2.2f, scene.dot_radius);
     for (Index v : face) {
       if (scene.irregular[v] == 0) continue;
       // In space, not in the image: the dot lies on the surface.
