@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
 
 namespace meshgrain {
@@ -13,9 +14,9 @@ struct PictureOptions {
   int height = 1200;
   Eigen::Vector3f view{1.0f, 0.6f, 1.4f};  ///< From the surface's centre towards the eye.
   Eigen::Vector3f up{0.0f, 1.0f, 0.0f};
-  float zoom = 1;                          ///< 1 shows the whole surface.
+  float zoom = 1;  ///< 1 shows the whole surface.
   bool edges = true;
-  bool irregular = true;                   ///< Dots on irregular vertices, tints on odd faces.
+  bool irregular = true;  ///< Dots on irregular vertices, tints on odd faces.
 };
 
 struct Image {
@@ -23,12 +24,15 @@ struct Image {
   std::vector<std::uint8_t> rgb;  ///< width x height x 3, row after row from the top.
 };
 
-/// Draws a mesh with its edges and irregular interior vertices (red: fewer neighbours than regular,
-/// blue: more), or the points of a cloud, by a small software rasteriser (orthographic, z-buffered,
-/// antialiased).
-Image draw_picture(const Mesh& mesh, const PictureOptions& options = {});
+/// Draws a mesh with its edges, borders (red lines), irregular interior vertices (dots, red: fewer
+/// neighbours than regular, blue: more) and, in a quad mesh, tints its other faces; or the points
+/// of a cloud. Seen from behind, faces are red. A small software rasteriser: orthographic,
+/// z-buffered, antialiased. Edges and dots fade where they are too dense to be told apart. Throws
+/// Error for options that make no sense.
+Image draw_picture(const Mesh& mesh, const PictureOptions& options = {},
+                   const Context& context = Context());
 
-/// Throws Error if the file cannot be written.
+/// Writes the whole file or, throwing Error, none.
 void write_png(const std::filesystem::path& path, const Image& image);
 
 }  // namespace meshgrain

@@ -12,8 +12,8 @@ namespace meshgrain {
 std::vector<std::string> sample_names();
 
 /// A made shape for demonstrations and tests: triangles, closed and oriented outwards, about the
-/// origin, with every crease on mesh edges (only `plate` is open). `resolution` scales the number of
-/// vertices along a side (1 = the usual density, between 0.1 and 500). The Euler number is in
+/// origin, with every crease on mesh edges (only `plate` is open). `resolution` scales the number
+/// of vertices along a side (1 = the usual density, between 0.1 and 500). The Euler number is in
 /// brackets.
 ///
 ///     bracket       L-shaped bracket with a fillet, a rounded end and a round hole [0]
