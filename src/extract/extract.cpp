@@ -63,7 +63,7 @@ Extraction extract_mesh(const Graph& graph, const OrientationField& orientation,
   repair.find_holes(mark(clusters.edges, clusters.border), options.largest_filled_gap);
   repair.split_large();
   if (position.posy == 4) {
-    repair.merge_triangles();
+    repair.remove_superfluous_edges();
     repair.remove_doublets();
   }
   context.progress("extraction", 1);

@@ -3,7 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <tuple>
 
 namespace meshgrain {
 
@@ -79,15 +81,6 @@ void FaceRepair::find_holes(const std::vector<std::uint8_t>& on_border, std::siz
   }
 }
 
-void FaceRepair::remove_edge(Index h) {
-  const bool hole = hole_[h] || hole_[PolygonMap::twin(h)];
-  const Index rest = map_.next(h) != PolygonMap::twin(h) ? map_.next(h) : map_.prev(h);
-  map_.remove_edge(h);
-  if (!hole || map_.removed(rest)) return;
-  map_.orbit(rest, scratch_);
-  for (const Index g : scratch_) hole_[g] = 1;
-}
-
 void FaceRepair::remove_doublets() {
   for (bool again = true; again;) {
     again = false;
@@ -105,26 +98,65 @@ void FaceRepair::remove_doublets() {
   }
 }
 
-void FaceRepair::merge_triangles() {
+/// By how much the number of irregular faces and inner vertices falls if an edge goes; -1 if it must
+/// stay.
+int FaceRepair::removal_gain(Index h) const {
+  const Index t = PolygonMap::twin(h);
+  if (map_.removed(h) || hole_[h] || hole_[t]) return -1;
+  const std::size_t a = map_.degree(h), b = map_.degree(t);
+  if (a + b - 2 > 5) return -1;
+  int gain = (a != 4) + (b != 4) - (a + b - 2 != 4);
+  for (const Index side : {h, t}) {
+    std::size_t valence = 0;
+    bool inner = true;
+    Index g = side;
+    do {
+      ++valence;
+      inner = inner && !hole_[g];
+      g = map_.around(g);
+    } while (g != side);
+    if (valence <= (inner ? 3u : 2u)) return -1;
+    if (inner) gain += (valence != 4) - (valence - 1 != 4);
+  }
+  return gain;
+}
+
+/// How far from regular the face would be.
+double FaceRepair::removal_cost(Index h) const {
+  const Index t = PolygonMap::twin(h);
+  std::vector<Index> corners;
+  for (Index g = map_.next(h); g != h; g = map_.next(g)) corners.push_back(map_.origin(g));
+  for (Index g = map_.next(t); g != t; g = map_.next(g)) corners.push_back(map_.origin(g));
+  std::vector<Index> sorted = corners;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) return 1e30;
+  return polygon_cost(corners);
+}
+
+void FaceRepair::remove_superfluous_edges() {
   struct Candidate {
+    int gain;
     double cost;
     Index h;
-    bool operator<(const Candidate& o) const { return cost < o.cost || (cost == o.cost && h < o.h); }
+    bool operator<(const Candidate& o) const {
+      return std::tie(o.gain, cost, h) < std::tie(gain, o.cost, o.h);
+    }
   };
-  std::vector<Candidate> candidates;
-  for (Index h = 0; h < map_.halfedges(); h += 2) {
-    const Index t = PolygonMap::twin(h);
-    if (map_.removed(h) || hole_[h] || hole_[t]) continue;
-    if (map_.degree(h) != 3 || map_.degree(t) != 3) continue;
-    const Index quad[4] = {map_.origin(h), map_.origin(map_.prev(t)), map_.origin(t),
-                           map_.origin(map_.prev(h))};
-    if (quad[1] == quad[3]) continue;
-    const double cost = polygon_cost(quad);
-    if (cost < 1e9) candidates.push_back({cost, h});
-  }
-  std::sort(candidates.begin(), candidates.end());
-  for (const Candidate& c : candidates) {
-    if (map_.degree(c.h) == 3 && map_.degree(PolygonMap::twin(c.h)) == 3) map_.remove_edge(c.h);
+  for (bool again = true; again;) {
+    again = false;
+    std::vector<Candidate> candidates;
+    for (Index h = 0; h < map_.halfedges(); h += 2) {
+      const int gain = removal_gain(h);
+      if (gain <= 0) continue;
+      const double cost = removal_cost(h);
+      if (cost < 1e9) candidates.push_back({gain, cost, h});
+    }
+    std::sort(candidates.begin(), candidates.end());
+    for (const Candidate& c : candidates) {
+      if (removal_gain(c.h) != c.gain || removal_cost(c.h) >= 1e9) continue;
+      map_.remove_edge(c.h);
+      again = true;
+    }
   }
 }
 
@@ -135,7 +167,7 @@ double FaceRepair::polygon_cost(std::span<const Index> corners) const {
   double cost = 0;
   for (std::size_t k = 0; k < n; ++k) {
     const double a = angle(corners[k], corners[(k + 1) % n], corners[(k + n - 1) % n]);
-    if (a > 0.95 * pi) cost += 1e9;
+    if (a > 1.1 * pi) cost += 1e9;  // smoothing straightens a corner that is nearly flat
     cost += (a - regular) * (a - regular);
   }
   return cost;

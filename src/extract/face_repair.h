@@ -25,8 +25,10 @@ class FaceRepair {
   /// Removes interior vertices with two edges, which no regular mesh has.
   void remove_doublets();
 
-  /// Removes the edges between pairs of triangles that make a good quad, best first.
-  void merge_triangles();
+  /// Quads: removes edges as long as that leaves fewer irregular faces and vertices, the greatest gain
+  /// first: between the halves of a quad, or the long side of a flat triangle, which makes a T-junction
+  /// out of four irregularities.
+  void remove_superfluous_edges();
 
   /// Splits faces with more corners than the symmetry allows along their best chords.
   void split_large();
@@ -38,7 +40,8 @@ class FaceRepair {
   double angle(Index v, Index from, Index to) const;
   double polygon_cost(std::span<const Index> corners) const;
   bool same_orbit(Index a, Index b) const;
-  void remove_edge(Index h);
+  int removal_gain(Index h) const;
+  double removal_cost(Index h) const;
   bool split_once(Index h);
 
   PolygonMap& map_;
