@@ -1,5 +1,6 @@
 #include "io/range_grid.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <vector>
