@@ -36,6 +36,13 @@ struct PositionField {
   std::vector<Vec3> points;
 };
 
+/// Both fields, with the surface that they live on: what one program writes and another reads.
+struct Fields {
+  Mesh surface;  ///< The triangle mesh or point cloud whose vertices are the nodes, with normals.
+  OrientationField orientation;
+  PositionField position;
+};
+
 enum class OrientationEnergy {
   extrinsic,  ///< Angles in space (Eq. 4).
   intrinsic,  ///< Angles after unfolding (Eq. 2).

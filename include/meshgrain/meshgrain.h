@@ -1,15 +1,25 @@
 #pragma once
 
-/// Everything of Meshgrain's public API.
+/// Everything of Meshgrain's public API: remesh() for the whole way, and each stage by itself.
 
+#include "meshgrain/alignment.h"
 #include "meshgrain/clean.h"
 #include "meshgrain/context.h"
 #include "meshgrain/curvature.h"
 #include "meshgrain/error.h"
+#include "meshgrain/extract.h"
+#include "meshgrain/fields.h"
+#include "meshgrain/finish.h"
+#include "meshgrain/graph.h"
+#include "meshgrain/hierarchy.h"
 #include "meshgrain/io.h"
 #include "meshgrain/mesh.h"
 #include "meshgrain/normals.h"
 #include "meshgrain/picture.h"
+#include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
+#include "meshgrain/singularities.h"
+#include "meshgrain/sizing.h"
 #include "meshgrain/statistics.h"
+#include "meshgrain/surface.h"
 #include "meshgrain/triangulate.h"

@@ -21,13 +21,6 @@ enum class OutputFaces {
   hexagons,       ///< The dual of triangles.
 };
 
-/// Both fields, with the surface that they live on: what one program writes and another reads.
-struct Fields {
-  Mesh surface;  ///< The triangle mesh or point cloud whose vertices are the nodes, with normals.
-  OrientationField orientation;
-  PositionField position;
-};
-
 struct RemeshOptions {
   OutputFaces faces = OutputFaces::quads;
   int rosy = 0;  ///< 1, 2, 4 or 6; 0: 6 for triangles and hexagons, else 4.

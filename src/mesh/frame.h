@@ -1,6 +1,6 @@
 #pragma once
 
-#include "meshgrain/remesh.h"
+#include "meshgrain/fields.h"
 
 namespace meshgrain {
 

@@ -1,0 +1,457 @@
+// Stanford's Polygon File Format (PLY): text and both byte orders, any types and any order of
+// elements and properties. Understood are the elements `vertex`, `face`, `tristrips` and
+// `range_grid`; others are skipped.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+#include "io/coordinates.h"
+#include "io/formats.h"
+#include "io/ply_header.h"
+#include "io/range_grid.h"
+#include "io/text.h"
+
+namespace meshgrain::io {
+namespace {
+
+using ply::Element;
+using ply::Encoding;
+using ply::Header;
+using ply::Property;
+using ply::Type;
+
+/// The numbers of a text file, one after the other; line breaks mean nothing.
+class TextBody {
+ public:
+  TextBody(const Input& input, Text& text) : input_(input), text_(text) {}
+
+  static constexpr std::size_t least_bytes(Type) { return 2; }
+  const char* at() const { return text_.at(); }
+  std::size_t left() const { return static_cast<std::size_t>(input_.end() - at()); }
+
+  double number(Type, const Item& item) {
+    const double value = text_.number(item, "a number");
+    last_ = text_.at();
+    return value;
+  }
+  void skip(Type, std::uint64_t count, const Item& item) {
+    for (std::uint64_t i = 0; i < count; ++i) {
+      if (text_.file_ends()) text_.fail("the file ends within " + item.text());
+      text_.word();
+    }
+  }
+  [[noreturn]] void fail_at_last(Type, const std::string& what) const { text_.fail(last_, what); }
+  [[noreturn]] void fail_at_end(const Item& item) const {
+    text_.fail(input_.end(), "the file ends within " + item.text());
+  }
+
+ private:
+  const Input& input_;
+  Text& text_;
+  const char* last_ = nullptr;  // behind the last number
+};
+
+/// The numbers of a binary file.
+template <std::endian order>
+class BinaryBody {
+ public:
+  BinaryBody(const Input& input, const char* begin) : input_(input), at_(begin) {}
+
+  static constexpr std::size_t least_bytes(Type type) { return size_of(type); }
+  const char* at() const { return at_; }
+  std::size_t left() const { return static_cast<std::size_t>(input_.end() - at_); }
+
+  template <class T>
+  T load(const char* at) const {
+    std::array<char, sizeof(T)> bytes;
+    std::memcpy(bytes.data(), at, sizeof(T));
+    if constexpr (order != std::endian::native) std::reverse(bytes.begin(), bytes.end());
+    return std::bit_cast<T>(bytes);
+  }
+  double number(Type type, const Item& item) {
+    if (left() < size_of(type)) fail_at_end(item);
+    const char* const at = std::exchange(at_, at_ + size_of(type));
+    switch (type) {
+      case Type::i8:
+        return load<std::int8_t>(at);
+      case Type::u8:
+        return load<std::uint8_t>(at);
+      case Type::i16:
+        return load<std::int16_t>(at);
+      case Type::u16:
+        return load<std::uint16_t>(at);
+      case Type::i32:
+        return load<std::int32_t>(at);
+      case Type::u32:
+        return load<std::uint32_t>(at);
+      case Type::f32:
+        return load<float>(at);
+      case Type::f64:
+        break;
+    }
+    return load<double>(at);
+  }
+  void skip(Type type, std::uint64_t count, const Item& item) {
+    if (count > left() / size_of(type)) fail_at_end(item);
+    at_ += count * size_of(type);
+  }
+  void advance(std::size_t bytes) { at_ += bytes; }
+  [[noreturn]] void fail_at_last(Type type, const std::string& what) const {
+    input_.fail_at_byte(at_ - size_of(type), what);
+  }
+  [[noreturn]] void fail_at_end(const Item& item) const {
+    input_.fail_at_byte(input_.end(), "the file ends within " + item.text());
+  }
+
+ private:
+  const Input& input_;
+  const char* at_;
+};
+
+/// Reads the elements in their order, from any kind of body.
+template <class Body>
+class Reader {
+ public:
+  Reader(const Input& input, const Text& text, const Header& header, Body body)
+      : input_(input), text_(text), header_(header), body_(body) {}
+
+  Mesh read() {
+    const Element* const vertices = header_.find("vertex");
+    if (!vertices) input_.fail("the header names no element \"vertex\"");
+    vertices_ = vertices->count;
+    if (vertices_ >= no_index) {
+      text_.fail(vertices->at,
+                 fmt::format("{} vertices are more than 32 bits can number", vertices_));
+    }
+    for (const Element& element : header_.elements) {
+      if (element.name == "vertex") {
+        read_vertices(element);
+      } else if (element.name == "face") {
+        read_faces(element);
+      } else if (element.name == "tristrips") {
+        read_strips(element);
+      } else if (element.name == "range_grid") {
+        read_grid(element);
+      } else {
+        skip(element);
+      }
+    }
+    coordinates_.move_to(mesh_, input_);
+    if (!grid_.empty()) triangulate_grid(grid_, header_.columns, mesh_);
+    return std::move(mesh_);
+  }
+
+ private:
+  void tick(std::uint64_t row) const {
+    if (row % 65536 == 0) input_.progress(body_.at());
+  }
+
+  /// The fewest bytes that a row of `element` takes.
+  std::size_t row_bytes(const Element& element) const {
+    std::size_t bytes = 0;
+    for (const Property& p : element.properties) {
+      bytes += body_.least_bytes(p.count_type.value_or(p.type));
+    }
+    return std::max<std::size_t>(bytes, 1);
+  }
+  std::size_t plausible_rows(const Element& element) const {
+    return plausible(element.count, body_.left(), row_bytes(element));
+  }
+
+  std::uint64_t list_size(const Property& property, const Item& item) {
+    const double size = body_.number(*property.count_type, item);
+    if (!(size >= 0 && size < no_index && size == std::floor(size))) {
+      body_.fail_at_last(*property.count_type,
+                         fmt::format("{} is no length of a list, in {}", size, item.text()));
+    }
+    return static_cast<std::uint64_t>(size);
+  }
+
+  void skip(const Property& property, const Item& item) {
+    const std::uint64_t count = property.count_type ? list_size(property, item) : 1;
+    body_.skip(property.type, count, item);
+  }
+
+  void skip(const Element& element) {
+    if (element.properties.empty()) return;
+    const std::string name = in_quotes(element.name);
+    for (std::uint64_t row = 0; row < element.count; ++row) {
+      tick(row);
+      const Item item{name.c_str(), row, element.count};
+      for (const Property& property : element.properties) skip(property, item);
+    }
+  }
+
+  void read_vertices(const Element& element) {
+    // Each property goes to the place of its name; the last place takes what nobody wants.
+    constexpr std::string_view names[] = {"x", "y", "z", "nx", "ny", "nz"};
+    constexpr std::size_t unwanted = std::size(names);
+    const std::string& value_name = input_.options().value_name;
+    std::vector<std::size_t> places;
+    std::array<int, unwanted + 1> found{};
+    std::size_t value_property = no_index;
+    for (const Property& property : element.properties) {
+      std::size_t place = unwanted;
+      if (!property.count_type) {
+        place = static_cast<std::size_t>(
+            std::find(std::begin(names), std::end(names), property.name) - std::begin(names));
+        if (property.name == value_name) value_property = places.size();
+      }
+      places.push_back(place);
+      ++found[place];
+    }
+    for (std::size_t place = 0; place < 3; ++place) {
+      if (found[place] != 1) {
+        text_.fail(element.at, fmt::format("element vertex must have one number \"{}\", has {}",
+                                           names[place], found[place]));
+      }
+    }
+    const bool normals = found[3] == 1 && found[4] == 1 && found[5] == 1;
+    const bool values = value_property != no_index;
+    if (!value_name.empty() && !values) {
+      text_.fail(element.at, "element vertex has no number " + in_quotes(value_name));
+    }
+
+    const std::size_t expected = plausible_rows(element);
+    coordinates_.reserve(expected);
+    if (normals) mesh_.normals.reserve(expected);
+    if (values) mesh_.values.reserve(expected);
+    std::array<double, unwanted> row{};
+    for (std::uint64_t v = 0; v < element.count; ++v) {
+      tick(v);
+      const Item item{"vertex", v, element.count};
+      for (std::size_t p = 0; p < places.size(); ++p) {
+        const Property& property = element.properties[p];
+        const bool is_value = p == value_property;
+        if (places[p] == unwanted && !is_value) {
+          skip(property, item);
+          continue;
+        }
+        const double number = body_.number(property.type, item);
+        if (!(std::abs(number) <= std::numeric_limits<float>::max())) {
+          body_.fail_at_last(property.type,
+                             fmt::format("{} is not finite in single precision, in {}",
+                                         in_quotes(property.name), item.text()));
+        }
+        if (places[p] != unwanted) row[places[p]] = number;
+        if (is_value) mesh_.values.push_back(static_cast<float>(number));
+      }
+      coordinates_.push(row[0], row[1], row[2]);
+      if (normals) mesh_.normals.emplace_back(Eigen::Vector3d(&row[3]).cast<float>());
+    }
+  }
+
+  /// Reads each row's list of vertices from row `first` on, and calls `use` with it.
+  template <class Use>
+  void for_each_list(const Element& element, std::uint64_t first, bool restarts, const Use& use) {
+    const auto is_wanted = [](const Property& p) {
+      return p.count_type && (p.name == "vertex_indices" || p.name == "vertex_index");
+    };
+    const auto& properties = element.properties;
+    if (element.count > 0 && std::count_if(properties.begin(), properties.end(), is_wanted) != 1) {
+      text_.fail(element.at,
+                 fmt::format("element {} must have one list \"vertex_indices\"", element.name));
+    }
+    const std::string name(element.name);
+    std::vector<Index> list;
+    for (std::uint64_t row = first; row < element.count; ++row) {
+      tick(row);
+      const Item item{name.c_str(), row, element.count};
+      for (const Property& property : properties) {
+        if (is_wanted(property)) {
+          read_list(property, item, restarts, list);
+          use(list);
+        } else {
+          skip(property, item);
+        }
+      }
+    }
+  }
+
+  /// Reads indices; no_index stands for -1, which is allowed where `restarts`.
+  void read_list(const Property& property, const Item& item, bool restarts,
+                 std::vector<Index>& list) {
+    const std::uint64_t size = list_size(property, item);
+    if (size > body_.left() / body_.least_bytes(property.type) + 1) body_.fail_at_end(item);
+    list.clear();
+    list.reserve(size);
+    for (std::uint64_t i = 0; i < size; ++i) {
+      const double index = body_.number(property.type, item);
+      if (index >= 0 && index < static_cast<double>(vertices_) && index == std::floor(index)) {
+        list.push_back(static_cast<Index>(index));
+      } else if (restarts && index == -1) {
+        list.push_back(no_index);
+      } else {
+        body_.fail_at_last(property.type, out_of_range(fmt::format("{}", index), vertices_) +
+                                              ", in " + item.text());
+      }
+    }
+  }
+
+  void read_faces(const Element& element) {
+    const std::uint64_t read = mesh_.faces.empty() ? read_plain_triangles(element) : 0;
+    if (read == 0) mesh_.faces.reserve(plausible_rows(element), 3 * plausible_rows(element));
+    for_each_list(element, read, false, [&](const std::vector<Index>& face) {
+      if (face.size() >= 3) mesh_.faces.push_back(face);
+    });
+  }
+
+  /// Reads the layout that most files have in a plain loop: triangles of a byte 3 and three indices
+  /// of 32 bits. Returns the number of rows read, which ends before the first that is different,
+  /// and is 0 if an index is out of range, so that the general way finds its place.
+  std::uint64_t read_plain_triangles(const Element& element) {
+    if constexpr (std::is_same_v<Body, TextBody>) {
+      return 0;
+    } else {
+      if (element.properties.size() != 1) return 0;
+      const Property& list = element.properties[0];
+      if (list.count_type != Type::u8 || (list.type != Type::i32 && list.type != Type::u32) ||
+          (list.name != "vertex_indices" && list.name != "vertex_index")) {
+        return 0;
+      }
+      constexpr std::size_t bytes = 13;
+      const char* const begin = body_.at();
+      const std::size_t most = std::min<std::uint64_t>(element.count, body_.left() / bytes);
+      std::size_t rows = 0;
+      while (rows < most && begin[bytes * rows] == 3) ++rows;
+      Faces triangles = Faces::uniform(rows, 3);
+      const std::span<Index> corners = triangles.corners();
+      Index highest = 0;
+      for (std::size_t row = 0; row < rows; ++row) {
+        if (row % 65536 == 0) input_.progress(begin + bytes * row);
+        for (std::size_t c = 0; c < 3; ++c) {
+          const Index index = body_.template load<Index>(begin + bytes * row + 1 + 4 * c);
+          corners[3 * row + c] = index;
+          highest = std::max(highest, index);
+        }
+      }
+      if (rows == 0 || highest >= vertices_) return 0;
+      body_.advance(bytes * rows);
+      mesh_.faces = std::move(triangles);
+      return rows;
+    }
+  }
+
+  /// Every vertex of a strip but its first two makes a triangle with the two before it; every other
+  /// one is turned around. An index of -1 begins a new strip.
+  void read_strips(const Element& element) {
+    for_each_list(element, 0, true, [&](const std::vector<Index>& list) {
+      std::size_t begin = 0;
+      for (std::size_t i = 0; i < list.size(); ++i) {
+        if (list[i] == no_index) begin = i + 1;
+        if (i < begin + 2) continue;
+        const bool turned = (i - begin) % 2 == 1;
+        const Index a = list[turned ? i - 1 : i - 2];
+        const Index b = list[turned ? i - 2 : i - 1];
+        const Index c = list[i];
+        // A repeated vertex joins strips or changes their direction: it is no triangle of the
+        // shape.
+        if (a != b && b != c && c != a) mesh_.faces.push_back({a, b, c});
+      }
+    });
+  }
+
+  void read_grid(const Element& element) {
+    const std::uint64_t columns = header_.columns;
+    if (columns == 0 || element.count % columns != 0 || element.count / columns != header_.rows) {
+      text_.fail(element.at,
+                 fmt::format("element range_grid has {} cells, but obj_info num_cols and num_rows "
+                             "give {} x {}",
+                             element.count, columns, header_.rows));
+    }
+    grid_.reserve(plausible_rows(element));
+    for_each_list(element, 0, false, [&](const std::vector<Index>& list) {
+      if (list.size() > 1) {
+        input_.fail_at_byte(body_.at(), fmt::format("a cell of the range_grid has {} vertices, "
+                                                    "expected none or one",
+                                                    list.size()));
+      }
+      grid_.push_back(list.empty() ? no_index : list[0]);
+    });
+  }
+
+  const Input& input_;
+  const Text& text_;  // for places in the header
+  const Header& header_;
+  Body body_;
+  std::uint64_t vertices_ = 0;  // as the header says
+  Mesh mesh_;
+  Coordinates coordinates_;
+  std::vector<Index> grid_;  // the vertex of each cell, or no_index; empty if there is no grid
+};
+
+}  // namespace
+
+bool is_ply(std::string_view bytes) {
+  return bytes.starts_with("ply\n") || bytes.starts_with("ply\r");
+}
+
+Mesh read_ply(const Input& input) {
+  Text text(input);
+  const Header header = ply::read_header(text);
+  switch (header.encoding) {
+    case Encoding::text:
+      return Reader(input, text, header, TextBody(input, text)).read();
+    case Encoding::little_endian:
+      return Reader(input, text, header, BinaryBody<std::endian::little>(input, text.at())).read();
+    case Encoding::big_endian:
+      break;
+  }
+  return Reader(input, text, header, BinaryBody<std::endian::big>(input, text.at())).read();
+}
+
+void write_ply(Output& output, const Mesh& mesh) {
+  const bool shifted = !mesh.origin.isZero(0);
+  const bool normals = !mesh.normals.empty();
+  std::size_t highest_degree = mesh.faces.uniform_degree();
+  for (std::size_t f = 0; f < mesh.faces.size() && mesh.faces.uniform_degree() == 0; ++f) {
+    highest_degree = std::max(highest_degree, mesh.faces.degree(f));
+  }
+  const bool long_lists = highest_degree > std::numeric_limits<std::uint8_t>::max();
+  const bool large = mesh.positions.size() > std::numeric_limits<std::int32_t>::max();
+
+  output.print("ply\nformat binary_little_endian 1.0\ncomment written by Meshgrain\n");
+  output.print("element vertex {}\n", mesh.positions.size());
+  for (const char* name : {"x", "y", "z"}) {
+    output.print("property {} {}\n", shifted ? "double" : "float", name);
+  }
+  if (normals) output.write("property float nx\nproperty float ny\nproperty float nz\n");
+  if (!mesh.is_point_cloud()) {
+    output.print("element face {}\nproperty list {} {} vertex_indices\n", mesh.faces.size(),
+                 long_lists ? "uint" : "uchar", large ? "uint" : "int");
+  }
+  output.write("end_header\n");
+
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Vec3& p = mesh.positions[v];
+    for (int i = 0; i < 3; ++i) {
+      if (shifted) {
+        output.put(static_cast<double>(p[i]) + mesh.origin[i]);
+      } else {
+        output.put(p[i]);
+      }
+    }
+    if (normals) {
+      for (const float n : mesh.normals[v]) output.put(n);
+    }
+  }
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const std::span<const Index> face = mesh.faces[f];
+    if (long_lists) {
+      output.put(static_cast<std::uint32_t>(face.size()));
+    } else {
+      output.put(static_cast<std::uint8_t>(face.size()));
+    }
+    for (const Index v : face) output.put(v);
+  }
+}
+
+}  // namespace meshgrain::io

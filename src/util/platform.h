@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+/// All that differs between operating systems, and nothing else.
+namespace meshgrain::platform {
+
+/// The bytes of a file, mapped into memory where the system can, else read into it. They stay valid
+/// as long as the object lives.
+class MappedFile {
+ public:
+  /// Throws std::system_error if the file cannot be opened or is not a regular file.
+  explicit MappedFile(const std::filesystem::path& path);
+  ~MappedFile();
+  MappedFile(const MappedFile&) = delete;
+  MappedFile& operator=(const MappedFile&) = delete;
+
+  std::string_view bytes() const { return bytes_; }
+
+  /// Hints that the bytes before `offset` were consumed, so that they need not stay in memory. They
+  /// can still be read.
+  void release_before(std::size_t offset);
+
+ private:
+  std::string_view bytes_;
+  std::string copy_;  // holds the bytes where mapping is not to be had
+  std::size_t released_ = 0;
+  bool mapped_ = false;
+};
+
+/// The most memory in bytes that the process has had resident so far, or 0 if unknown.
+std::size_t peak_memory();
+
+bool stdout_is_terminal();
+bool stderr_is_terminal();
+
+/// Columns of the terminal, or 80 if there is none.
+int terminal_width();
+
+/// Renames `from` to `to` in one step that replaces an existing file. Both must lie in one file
+/// system. Throws std::filesystem::filesystem_error.
+void replace_file(const std::filesystem::path& from, const std::filesystem::path& to);
+
+/// A path in the folder of `path` that no other call, in this process or another that runs,
+/// returns.
+std::filesystem::path temporary_beside(const std::filesystem::path& path);
+
+}  // namespace meshgrain::platform
