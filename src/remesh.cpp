@@ -284,6 +284,11 @@ RemeshResult remesh(Mesh input, const RemeshOptions& options, const Context& con
   stage("smoothing", [&] {
     SmoothOptions smoothing;
     smoothing.iterations = options.smoothing;
+    if (!lengths.uniform() && options.graph.nodes == GraphNodes::vertices) {
+      std::vector<float> sizes;
+      for (const Index node : extraction.nodes) sizes.push_back(lengths[node]);
+      smoothing.relative_size = EdgeLength(std::move(sizes));
+    }
     smooth(extraction, surface, graph, smoothing, context);
   });
 

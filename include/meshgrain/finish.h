@@ -21,7 +21,10 @@ void take_dual(Extraction& extraction);
 std::size_t make_manifold(Extraction& extraction);
 
 struct SmoothOptions {
-  int iterations = 10;
+  int iterations = 30;
+  /// How strongly faces are drawn to one size, 0 to 1: areas become more even, angles a little less.
+  double evenness = 0.4;
+  EdgeLength relative_size{1.0f};  ///< Relative to each other: one, or one a vertex.
 };
 
 /// Evens the faces out: each iteration moves every vertex to the mean of where it would be in the

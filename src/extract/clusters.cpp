@@ -220,7 +220,11 @@ Clusters collapse_clusters(const Graph& graph, const OrientationField& orientati
     }
   }
   sort_unique(result.edges);
+  result.on_border.assign(kept_count, 0);
   for (const auto& [i, j] : options.border) {
+    for (const Index node : {i, j}) {
+      if (cluster_of[node] != no_index) result.on_border[cluster_of[node]] = 1;
+    }
     const auto edge = clusters_of_edge(i, j);
     if (edge[1] != no_index && edge[0] != edge[1]) result.border.push_back(edge);
   }

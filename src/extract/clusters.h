@@ -14,6 +14,7 @@ struct Clusters {
   std::vector<Index> nodes;                  // the member nearest to the position
   std::vector<std::array<Index, 2>> edges;   // sorted, first < second
   std::vector<std::array<Index, 2>> border;  // those of the edges that lie on the border, sorted
+  std::vector<std::uint8_t> on_border;       // whether a cluster has nodes on the border
 };
 
 Clusters collapse_clusters(const Graph& graph, const OrientationField& orientation,

@@ -60,11 +60,14 @@ Extraction extract_mesh(const Graph& graph, const OrientationField& orientation,
   PolygonMap map(clusters.positions, clusters.normals, clusters.edges);
   FaceRepair repair(map, clusters.positions, clusters.normals, position.posy);
   repair.remove_dangling();
-  repair.find_holes(mark(clusters.edges, clusters.border), options.largest_filled_gap);
+  repair.find_holes(mark(clusters.edges, clusters.border), clusters.on_border,
+                    options.largest_filled_gap);
   repair.split_large();
   if (position.posy == 4) {
     repair.remove_superfluous_edges();
     repair.remove_doublets();
+  } else {
+    repair.flip_edges();
   }
   context.progress("extraction", 1);
   return collect_faces(map, repair, clusters);

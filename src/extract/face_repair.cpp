@@ -59,23 +59,29 @@ void FaceRepair::remove_dangling() {
   }
 }
 
-void FaceRepair::find_holes(const std::vector<std::uint8_t>& on_border, std::size_t largest_gap) {
+void FaceRepair::find_holes(std::span<const std::uint8_t> border_edges,
+                            std::span<const std::uint8_t> border_vertices,
+                            std::size_t largest_gap) {
   std::vector<std::uint8_t> seen(map_.halfedges(), 0);
   std::vector<Index> orbit;
   for (Index h = 0; h < map_.halfedges(); ++h) {
     if (map_.removed(h) || seen[h]) continue;
     map_.orbit(h, orbit);
-    std::size_t along = 0;
+    std::size_t edges = 0, vertices = 0;
     double turning = 0;
     for (const Index g : orbit) {
       seen[g] = 1;
-      along += on_border[g / 2];
+      edges += border_edges[g / 2];
+      vertices += border_vertices[map_.origin(g)];
       turning += pi - corner_angle(g);
     }
     // Around a face one turns once to the left; around the outside of an open sheet, to the right.
     const bool outside = turning < 0;
-    const bool bordered = 10 * along > 6 * orbit.size() && (outside || orbit.size() > 4);
-    if (bordered || orbit.size() > largest_gap) {
+    const std::size_t n = orbit.size();
+    // Where the lattice runs askew to the border, the gap's edges are not those of the border, but its
+    // vertices are. The faces of a narrow strip have all of their vertices there too, and are small.
+    const bool bordered = 10 * edges > 6 * n || (n > 8 && 10 * vertices > 6 * n);
+    if ((bordered && (outside || n > 4)) || n > largest_gap) {
       for (const Index g : orbit) hole_[g] = 1;
     }
   }
@@ -155,6 +161,56 @@ void FaceRepair::remove_superfluous_edges() {
     for (const Candidate& c : candidates) {
       if (removal_gain(c.h) != c.gain || removal_cost(c.h) >= 1e9) continue;
       map_.remove_edge(c.h);
+      again = true;
+    }
+  }
+}
+
+/// By how much turning an edge brings the valences around it nearer to 6 (the sum of the squared
+/// differences); 0 if it must stay.
+int FaceRepair::flip_gain(Index h) const {
+  const Index t = PolygonMap::twin(h);
+  if (map_.removed(h) || hole_[h] || hole_[t] || map_.degree(h) != 3 || map_.degree(t) != 3) return 0;
+  const Index ends[2] = {map_.origin(h), map_.origin(t)};
+  const Index tips[2] = {map_.origin(map_.prev(h)), map_.origin(map_.prev(t))};
+  if (tips[0] == tips[1] || map_.adjacent(tips[0], tips[1])) return 0;
+  int gain = 0;
+  const auto add = [&](Index v, int change) {
+    int excess = 0;
+    Index g = map_.leaving(v);
+    const Index start = g;
+    bool inner = true;
+    do {
+      ++excess;
+      inner = inner && !hole_[g];
+      g = map_.around(g);
+    } while (g != start);
+    excess -= inner ? 6 : 4;
+    gain += excess * excess - (excess + change) * (excess + change);
+  };
+  for (const Index v : ends) add(v, -1);
+  for (const Index v : tips) add(v, 1);
+  if (gain <= 0) return 0;
+  // The two triangles must stay triangles: the quad around them convex, with room to spare.
+  const double most = 0.92 * pi;
+  const bool convex = angle(ends[0], tips[1], tips[0]) < most && angle(ends[1], tips[0], tips[1]) < most;
+  return convex ? gain : 0;
+}
+
+void FaceRepair::flip_edges() {
+  for (bool again = true; again;) {
+    again = false;
+    std::vector<std::pair<int, Index>> candidates;
+    for (Index h = 0; h < map_.halfedges(); h += 2) {
+      if (const int gain = flip_gain(h); gain > 0) candidates.emplace_back(-gain, h);
+    }
+    std::sort(candidates.begin(), candidates.end());
+    for (const auto& [loss, h] : candidates) {
+      if (flip_gain(h) != -loss) continue;
+      const Index a = map_.prev(h), b = map_.prev(PolygonMap::twin(h));
+      map_.remove_edge(h);
+      map_.add_edge(a, b);
+      hole_.resize(map_.halfedges(), 0);
       again = true;
     }
   }

@@ -18,9 +18,10 @@ class FaceRepair {
   /// Removes edges that have the same orbit on both sides: dangling ones and bridges.
   void remove_dangling();
 
-  /// Marks orbits as open: those that run along the border (`on_border`: one flag an edge), and what
-  /// is longer than `largest_gap`.
-  void find_holes(const std::vector<std::uint8_t>& on_border, std::size_t largest_gap);
+  /// Marks orbits as open: those that run along the border of the surface (`border_edges`: one flag
+  /// an edge; `border_vertices`), and what is longer than `largest_gap`.
+  void find_holes(std::span<const std::uint8_t> border_edges,
+                  std::span<const std::uint8_t> border_vertices, std::size_t largest_gap);
 
   /// Removes interior vertices with two edges, which no regular mesh has.
   void remove_doublets();
@@ -29,6 +30,9 @@ class FaceRepair {
   /// first: between the halves of a quad, or the long side of a flat triangle, which makes a T-junction
   /// out of four irregularities.
   void remove_superfluous_edges();
+
+  /// Triangles: turns the edge between two of them as long as that leaves fewer irregular vertices.
+  void flip_edges();
 
   /// Splits faces with more corners than the symmetry allows along their best chords.
   void split_large();
@@ -42,6 +46,7 @@ class FaceRepair {
   bool same_orbit(Index a, Index b) const;
   int removal_gain(Index h) const;
   double removal_cost(Index h) const;
+  int flip_gain(Index h) const;
   bool split_once(Index h);
 
   PolygonMap& map_;

@@ -10,15 +10,17 @@
 #include "mesh/border.h"
 #include "mesh/vertex_faces.h"
 #include "meshgrain/finish.h"
+#include "meshgrain/surface.h"
 
 namespace meshgrain {
 namespace {
 
 /// For every corner of a face, its place in the regular polygon that fits the face best: the face in
 /// its mean plane as complex numbers, of which the first Fourier coefficient is that polygon
-/// (in the least-squares sense, with free size and turn).
-void regular_targets(std::span<const Index> face, const std::vector<Vec3>& positions,
-                     std::span<Vec3> targets) {
+/// (in the least-squares sense, with free size and turn). The size is then drawn towards that of a
+/// polygon of the given side.
+void regular_targets(std::span<const Index> face, const std::vector<Vec3>& positions, float side,
+                     float evenness, std::span<Vec3> targets) {
   const std::size_t n = face.size();
   Vec3 center = Vec3::Zero(), normal = Vec3::Zero();
   for (const Index v : face) center += positions[v];
@@ -45,10 +47,35 @@ void regular_targets(std::span<const Index> face, const std::vector<Vec3>& posit
                    std::polar(1.0f, -step * static_cast<float>(k));
   }
   coefficient /= static_cast<float>(n);
+  const float radius = side / (2 * std::sin(step / 2));
+  if (const float size = std::abs(coefficient); size > 0) {
+    coefficient *= 1 - evenness + evenness * radius / size;
+  }
   for (std::size_t k = 0; k < n; ++k) {
     const auto z = coefficient * std::polar(1.0f, step * static_cast<float>(k));
     targets[k] = center + z.real() * x + z.imag() * y;
   }
+}
+
+/// The side that all faces would have if their areas were as even as their relative sizes ask for.
+float mean_side(const Mesh& mesh, const EdgeLength& relative) {
+  double area = 0, wanted = 0;  // of the faces; of the regular polygons of side 1 in their places
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto face = mesh.faces[f];
+    const auto n = static_cast<double>(face.size());
+    const Vec3& a = mesh.positions[face[0]];
+    Vec3 cross = Vec3::Zero();
+    double size = 0;
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      size += relative[face[k]] / n;
+      if (k >= 2) {
+        cross += (mesh.positions[face[k - 1]] - a).cross(mesh.positions[face[k]] - a);
+      }
+    }
+    area += cross.norm() / 2;
+    wanted += size * size * n / (4 * std::tan(std::numbers::pi / n));
+  }
+  return wanted > 0 ? static_cast<float>(std::sqrt(area / wanted)) : 0.0f;
 }
 
 /// Which vertices of the output lie on its border, and where on the input's border they slide.
@@ -133,6 +160,9 @@ Rail attach_to_border(const Extraction& extraction, const Mesh& surface, const B
 void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
             const SmoothOptions& options, const Context& context) {
   constexpr std::size_t grain = 1024;
+  // Steps a little longer than to the mean converge in fewer iterations; beyond 2 they would diverge.
+  constexpr float overrelaxation = 1.5f;
+  const auto evenness = static_cast<float>(options.evenness);
   Mesh& mesh = extraction.mesh;
   std::vector<Index>& seeds = extraction.nodes;
   const Projector projector(surface, graph);
@@ -160,9 +190,13 @@ void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
       mesh.positions.swap(next);
       continue;
     }
+    const float side = mean_side(mesh, options.relative_size);
     context.for_ranges(mesh.faces.size(), grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t f = begin; f < end; ++f) {
-        regular_targets(std::as_const(mesh.faces)[f], mesh.positions,
+        float relative = 0;
+        for (const Index v : std::as_const(mesh.faces)[f]) relative += options.relative_size[v];
+        relative /= static_cast<float>(mesh.faces.degree(f));
+        regular_targets(std::as_const(mesh.faces)[f], mesh.positions, relative * side, evenness,
                         {targets.data() + mesh.faces.first(f), mesh.faces.degree(f)});
       }
     });
@@ -176,7 +210,8 @@ void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
           }
         }
         const auto count = static_cast<float>(around[v].size());
-        next[v] = place(count > 0 ? Vec3(sum / count) : mesh.positions[v], v);
+        const Vec3& p = mesh.positions[v];
+        next[v] = place(count > 0 ? Vec3(p + overrelaxation * (sum / count - p)) : p, v);
       }
     });
     mesh.positions.swap(next);
