@@ -1,10 +1,13 @@
 #include "meshgrain/extract.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "extract/clusters.h"
 #include "extract/face_repair.h"
 #include "extract/polygon_map.h"
+#include "extract/drop_unused.h"
+#include "util/union_find.h"
 
 namespace meshgrain {
 namespace {
@@ -17,6 +20,40 @@ std::vector<std::uint8_t> mark(const std::vector<std::array<Index, 2>>& edges,
     result[e] = std::binary_search(chosen.begin(), chosen.end(), edges[e]);
   }
   return result;
+}
+
+/// Drops what broke off: parts of a few faces that are not the largest of their part of the graph.
+/// They come from contradictions between integers, not from the input.
+void drop_fragments(Extraction& extraction, const Graph& graph) {
+  constexpr std::size_t fragment = 8;  // faces
+  Mesh& mesh = extraction.mesh;
+  UnionFind output(mesh.positions.size()), input(graph.size());
+  for (Index i = 0; i < graph.size(); ++i) {
+    for (const Index j : graph.neighbors_of(i)) {
+      if (i < j) input.unite(i, j);
+    }
+  }
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto face = std::as_const(mesh.faces)[f];
+    for (const Index v : face) output.unite(face[0], v);
+  }
+  std::vector<std::size_t> size(mesh.positions.size(), 0), largest(graph.size(), 0);
+  const auto part_of = [&](std::size_t f) { return output.find(std::as_const(mesh.faces)[f][0]); };
+  const auto source_of = [&](Index part) { return input.find(extraction.nodes[part]); };
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) ++size[part_of(f)];
+  for (Index v = 0; v < size.size(); ++v) {
+    largest[source_of(v)] = std::max(largest[source_of(v)], size[v]);
+  }
+  Faces kept;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const Index part = part_of(f);
+    if (size[part] > fragment || size[part] == largest[source_of(part)]) {
+      kept.push_back(std::as_const(mesh.faces)[f]);
+    }
+  }
+  if (kept.size() == mesh.faces.size()) return;
+  mesh.faces = std::move(kept);
+  drop_unused(extraction);
 }
 
 /// The closed orbits as faces, and only the vertices that they use.
@@ -56,12 +93,14 @@ Extraction collect_faces(const PolygonMap& map, const FaceRepair& repair,
 Extraction extract_mesh(const Graph& graph, const OrientationField& orientation,
                         const PositionField& position, const ExtractOptions& options,
                         const Context& context) {
-  const Clusters clusters = collapse_clusters(graph, orientation, position, options, context);
+  Clusters clusters = collapse_clusters(graph, orientation, position, options, context);
   PolygonMap map(clusters.positions, clusters.normals, clusters.edges);
-  FaceRepair repair(map, clusters.positions, clusters.normals, position.posy);
+  FaceRepair repair(map, clusters, position.posy);
   repair.remove_dangling();
+  repair.cut_pinches();
   repair.find_holes(mark(clusters.edges, clusters.border), clusters.on_border,
                     options.largest_filled_gap);
+  repair.part_holes();
   repair.split_large();
   if (position.posy == 4) {
     repair.remove_superfluous_edges();
@@ -70,7 +109,9 @@ Extraction extract_mesh(const Graph& graph, const OrientationField& orientation,
     repair.flip_edges();
   }
   context.progress("extraction", 1);
-  return collect_faces(map, repair, clusters);
+  Extraction result = collect_faces(map, repair, clusters);
+  drop_fragments(result, graph);
+  return result;
 }
 
 }  // namespace meshgrain

@@ -11,16 +11,15 @@ namespace meshgrain {
 
 using std::numbers::pi;
 
-FaceRepair::FaceRepair(PolygonMap& map, std::span<const Vec3> positions,
-                       std::span<const Vec3> normals, int posy)
-    : map_(map), positions_(positions), normals_(normals), posy_(posy) {
+FaceRepair::FaceRepair(PolygonMap& map, Clusters& clusters, int posy)
+    : map_(map), clusters_(clusters), posy_(posy) {
   hole_.assign(map.halfedges(), 0);
 }
 
 /// The angle at v from one neighbour counterclockwise to another, in the tangent plane: 0 to 2 pi.
 double FaceRepair::angle(Index v, Index from, Index to) const {
-  const Vec3& n = normals_[v];
-  const Vec3 a = positions_[from] - positions_[v], b = positions_[to] - positions_[v];
+  const Vec3& n = clusters_.normals[v];
+  const Vec3 a = clusters_.positions[from] - clusters_.positions[v], b = clusters_.positions[to] - clusters_.positions[v];
   const double angle = std::atan2(n.dot(a.cross(b)), a.dot(b) - n.dot(a) * n.dot(b));
   return angle < 0 ? angle + 2 * pi : angle;
 }
@@ -59,6 +58,61 @@ void FaceRepair::remove_dangling() {
   }
 }
 
+void FaceRepair::cut(Index a, Index b) {
+  const Index old = map_.origin(a);
+  map_.split_vertex(a, b);
+  clusters_.positions.push_back(Vec3(clusters_.positions[old]));
+  clusters_.normals.push_back(Vec3(clusters_.normals[old]));
+  clusters_.nodes.push_back(Index{clusters_.nodes[old]});
+  clusters_.on_border.push_back(std::uint8_t{clusters_.on_border[old]});
+}
+
+void FaceRepair::cut_pinches() {
+  std::vector<Index> orbit;
+  std::vector<Index> corner_of(clusters_.positions.size(), no_index);  // in the current orbit
+  for (Index h = 0; h < map_.halfedges(); ++h) {
+    for (bool again = true; again && !map_.removed(h);) {
+      map_.orbit(h, orbit);
+      Index first = no_index, second = no_index;
+      for (const Index g : orbit) {
+        Index& corner = corner_of[map_.origin(g)];
+        if (corner != no_index) {
+          first = corner;
+          second = g;
+          break;
+        }
+        corner = g;
+      }
+      for (const Index g : orbit) corner_of[map_.origin(g)] = no_index;
+      again = first != no_index;
+      if (again) cut(first, second);
+      corner_of.resize(clusters_.positions.size(), no_index);
+    }
+    if (!map_.removed(h) && map_.degree(h) == 2) map_.remove_edge(h);
+  }
+}
+
+void FaceRepair::part_holes() {
+  const auto vertices = static_cast<Index>(clusters_.positions.size());
+  for (Index v = 0; v < vertices; ++v) {
+    for (bool again = true; again;) {
+      again = false;
+      const Index start = map_.leaving(v);
+      if (start == no_index) break;
+      Index first = no_index, h = start;
+      do {
+        if (hole_[h] && first != no_index) {
+          cut(first, h);
+          again = true;
+          break;
+        }
+        if (hole_[h]) first = h;
+        h = map_.around(h);
+      } while (h != start);
+    }
+  }
+}
+
 void FaceRepair::find_holes(std::span<const std::uint8_t> border_edges,
                             std::span<const std::uint8_t> border_vertices,
                             std::size_t largest_gap) {
@@ -90,7 +144,7 @@ void FaceRepair::find_holes(std::span<const std::uint8_t> border_edges,
 void FaceRepair::remove_doublets() {
   for (bool again = true; again;) {
     again = false;
-    for (Index v = 0; v < positions_.size(); ++v) {
+    for (Index v = 0; v < clusters_.positions.size(); ++v) {
       const Index h = map_.leaving(v);
       if (h == no_index || map_.valence(v) != 2) continue;
       const Index g = map_.around(h);
@@ -263,12 +317,31 @@ bool FaceRepair::split_once(Index h) {
   return true;
 }
 
+void FaceRepair::add_hub(Index h) {
+  std::vector<Index> rim;
+  map_.orbit(h, rim);
+  Vec3 position = Vec3::Zero(), normal = Vec3::Zero();
+  for (const Index g : rim) {
+    position += clusters_.positions[map_.origin(g)];
+    normal += clusters_.normals[map_.origin(g)];
+  }
+  const Index first = map_.origin(rim[0]);
+  clusters_.positions.push_back(position / static_cast<float>(rim.size()));
+  const float length = normal.norm();
+  clusters_.normals.push_back(length > 1e-6f ? Vec3(normal / length) : clusters_.normals[first]);
+  clusters_.nodes.push_back(clusters_.nodes[first]);
+  clusters_.on_border.push_back(0);
+  map_.add_hub(h);
+  hole_.resize(map_.halfedges(), 0);
+}
+
 void FaceRepair::split_large() {
   // Added halfedges lie at the end, so that what a split leaves is seen again.
   for (Index h = 0; h < map_.halfedges(); ++h) {
     if (map_.removed(h) || hole_[h]) continue;
     while (split_once(h)) {
     }
+    if (posy_ == 6 && map_.degree(h) > 3) add_hub(h);
   }
 }
 

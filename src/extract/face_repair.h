@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "extract/clusters.h"
 #include "extract/polygon_map.h"
 
 namespace meshgrain {
@@ -12,16 +13,22 @@ namespace meshgrain {
 /// is open.
 class FaceRepair {
  public:
-  FaceRepair(PolygonMap& map, std::span<const Vec3> positions, std::span<const Vec3> normals,
-             int posy);
+  FaceRepair(PolygonMap& map, Clusters& clusters, int posy);
 
   /// Removes edges that have the same orbit on both sides: dangling ones and bridges.
   void remove_dangling();
+
+  /// Cuts vertices at which an orbit touches itself, and closes the orbits of two edges that this can
+  /// leave: every orbit is then a simple polygon.
+  void cut_pinches();
 
   /// Marks orbits as open: those that run along the border of the surface (`border_edges`: one flag
   /// an edge; `border_vertices`), and what is longer than `largest_gap`.
   void find_holes(std::span<const std::uint8_t> border_edges,
                   std::span<const std::uint8_t> border_vertices, std::size_t largest_gap);
+
+  /// Cuts vertices at which several holes meet, so that the faces around each are one fan.
+  void part_holes();
 
   /// Removes interior vertices with two edges, which no regular mesh has.
   void remove_doublets();
@@ -34,7 +41,9 @@ class FaceRepair {
   /// Triangles: turns the edge between two of them as long as that leaves fewer irregular vertices.
   void flip_edges();
 
-  /// Splits faces with more corners than the symmetry allows along their best chords.
+  /// Splits faces with more corners than the symmetry allows along their best chords. A face of a
+  /// 6-PoSy that no chord can split, as its corners are joined outside of it already, gets a vertex in
+  /// its middle.
   void split_large();
 
   bool is_hole(Index h) const { return hole_[h]; }
@@ -48,12 +57,13 @@ class FaceRepair {
   double removal_cost(Index h) const;
   int flip_gain(Index h) const;
   bool split_once(Index h);
+  void add_hub(Index h);
+  void cut(Index a, Index b);
 
   PolygonMap& map_;
-  std::span<const Vec3> positions_, normals_;
+  Clusters& clusters_;
   int posy_;
   std::vector<std::uint8_t> hole_;  // one flag a halfedge
-  std::vector<Index> scratch_;
 };
 
 }  // namespace meshgrain

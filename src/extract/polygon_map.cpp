@@ -136,4 +136,47 @@ Index PolygonMap::add_edge(Index a, Index b) {
   return h;
 }
 
+Index PolygonMap::split_vertex(Index a, Index b) {
+  const auto fresh = static_cast<Index>(leaving_.size());
+  const Index old = origin_[a], ap = prev_[a], bp = prev_[b];
+  next_[ap] = b;
+  prev_[b] = ap;
+  next_[bp] = a;
+  prev_[a] = bp;
+  leaving_[old] = b;
+  leaving_.push_back(a);
+  Index h = a;
+  do {
+    origin_[h] = fresh;
+    h = around(h);
+  } while (h != a);
+  return fresh;
+}
+
+Index PolygonMap::add_hub(Index h) {
+  std::vector<Index> rim;
+  orbit(h, rim);
+  const auto hub = static_cast<Index>(leaving_.size());
+  const auto first = static_cast<Index>(origin_.size());
+  const auto n = static_cast<Index>(rim.size());
+  // Spoke k: first + 2k from the hub to the origin of rim[k], first + 2k + 1 back.
+  for (Index k = 0; k < n; ++k) {
+    origin_.push_back(hub);
+    origin_.push_back(origin_[rim[k]]);
+    next_.insert(next_.end(), 2, no_index);
+    prev_.insert(prev_.end(), 2, no_index);
+  }
+  for (Index k = 0; k < n; ++k) {
+    const Index out = first + 2 * k, back = first + 2 * ((k + 1) % n) + 1;
+    next_[out] = rim[k];
+    prev_[rim[k]] = out;
+    next_[rim[k]] = back;
+    prev_[back] = rim[k];
+    next_[back] = out;
+    prev_[out] = back;
+  }
+  leaving_.push_back(first);
+  return hub;
+}
+
 }  // namespace meshgrain

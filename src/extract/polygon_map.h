@@ -41,6 +41,12 @@ class PolygonMap {
   /// Adds an edge from the origin of `a` to the origin of `b`, two halfedges of one orbit. Returns
   /// the halfedge from the origin of `a`, in whose orbit `b` lies.
   Index add_edge(Index a, Index b);
+  /// Cuts the vertex that two halfedges leave in two: the edges from `a` clockwise up to `b` go to a
+  /// new vertex, which is returned. If `a` and `b` were in one orbit it becomes two, else theirs
+  /// become one.
+  Index split_vertex(Index a, Index b);
+  /// Puts a new vertex into h's orbit, joined to all of its corners. Returns the vertex.
+  Index add_hub(Index h);
 
  private:
   std::vector<Index> origin_, next_, prev_;

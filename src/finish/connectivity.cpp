@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include "extract/drop_unused.h"
 #include "mesh/vertex_faces.h"
 #include "meshgrain/finish.h"
 
@@ -27,26 +28,6 @@ Index append_mean(Extraction& extraction, std::span<const Index> vertices) {
   }
   extraction.nodes.push_back(seed);
   return id;
-}
-
-/// Keeps the vertices that faces use, in their order.
-void drop_unused(Extraction& extraction) {
-  Mesh& mesh = extraction.mesh;
-  std::vector<Index> rank(mesh.positions.size(), no_index);
-  for (const Index v : std::as_const(mesh.faces).corners()) rank[v] = 0;
-  Index count = 0;
-  for (Index v = 0; v < rank.size(); ++v) {
-    if (rank[v] == no_index) continue;
-    rank[v] = count;
-    mesh.positions[count] = mesh.positions[v];
-    if (!mesh.normals.empty()) mesh.normals[count] = mesh.normals[v];
-    extraction.nodes[count] = extraction.nodes[v];
-    ++count;
-  }
-  mesh.positions.resize(count);
-  if (!mesh.normals.empty()) mesh.normals.resize(count);
-  extraction.nodes.resize(count);
-  for (Index& v : mesh.faces.corners()) v = rank[v];
 }
 
 /// The undirected edges of all faces, each with the corners (positions in Faces::corners) that start
