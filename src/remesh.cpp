@@ -1,8 +1,9 @@
 #include "meshgrain/remesh.h"
 
-#include <Eigen/Geometry>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "field/transfer.h"
 #include "mesh/border.h"
@@ -129,7 +130,7 @@ std::vector<std::array<Index, 2>> border_of_graph(const Mesh& surface, const Gra
 
 /// How many faces or vertices were got for one that was asked for; 1 if no count was asked for.
 double count_ratio(const RemeshOptions& options, std::size_t input_vertices, const Mesh& mesh) {
-  if (options.edge_length > 0 || mesh.faces.empty()) return 1;
+  if (options.edge_length > 0) return 1;
   if (options.face_count > 0) {
     return static_cast<double>(mesh.faces.size()) / static_cast<double>(options.face_count);
   }
@@ -227,21 +228,18 @@ RemeshResult remesh(Mesh input, const RemeshOptions& options, const Context& con
     report.orientation_energies = solver->energies();
   });
 
-  // Positions and the mesh; where a count was asked for and missed, once more with edges that much
-  // longer or shorter.
+  // Positions and the mesh; where a count was asked for and missed, again with edges that much longer
+  // or shorter, and the nearest is kept.
   ExtractOptions extract;
   extract.energy = options.position_energy;
   extract.border = border_of_graph(surface, graph, options.graph.nodes);
   if (cloud) extract.largest_filled_gap = 12;
   Extraction extraction;
   const bool given = options.fields != nullptr && !options.fields->position.points.empty();
-  constexpr int attempts = 3;
-  for (int attempt = 0; attempt < attempts; ++attempt) {
-    stage("position field", [&] {
-      if (given) {
-        fields.position = transfer_position(*options.fields, graph, frame, context);
-        return;
-      }
+  double least_error = std::numeric_limits<double>::infinity();
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    PositionField field = stage("position field", [&] {
+      if (given) return transfer_position(*options.fields, graph, frame, context);
       PositionOptions position;
       static_cast<SolverOptions&>(position) = options.solver;
       position.posy = posy;
@@ -249,27 +247,34 @@ RemeshResult remesh(Mesh input, const RemeshOptions& options, const Context& con
       const auto solver = PositionSolver::create(hierarchy, fields.orientation, lengths, position,
                                                  border.position);
       while (solver->step(context)) context.progress("position field", solver->progress());
-      fields.position = solver->field();
       report.position_energies = solver->energies();
+      return solver->field();
     });
-    stage("extraction", [&] {
-      extraction = extract_mesh(graph, fields.orientation, fields.position, extract, context);
+    Extraction found = stage("extraction", [&] {
+      Extraction mesh = extract_mesh(graph, fields.orientation, field, extract, context);
       if (options.graph.nodes == GraphNodes::faces && !cloud) {
-        for (Index& node : extraction.nodes) node = surface.faces[node][0];
+        for (Index& node : mesh.nodes) node = surface.faces[node][0];
       }
-      if (options.manifold) make_manifold(extraction);
-      if (options.faces == OutputFaces::quads) split_into_quads(extraction);
-      if (options.faces == OutputFaces::hexagons) take_dual(extraction);
+      if (options.manifold) make_manifold(mesh);
+      if (options.faces == OutputFaces::quads) split_into_quads(mesh);
+      if (options.faces == OutputFaces::hexagons) take_dual(mesh);
+      return mesh;
     });
-    const double ratio = count_ratio(options, report.input_vertices, extraction.mesh);
+    const double ratio = count_ratio(options, report.input_vertices, found.mesh);
+    const double error = std::fabs(std::log(ratio));
+    if (error < least_error) {
+      least_error = error;
+      extraction = std::move(found);
+      fields.position = std::move(field);
+    }
     constexpr double tolerance = 0.03;
-    if (given || std::fabs(ratio - 1) < tolerance) break;
-    if (attempt + 1 < attempts) lengths = scaled(lengths, std::sqrt(ratio));
+    if (given || error < tolerance) break;
+    lengths = scaled(lengths, std::clamp(std::sqrt(ratio), 0.5, 2.0));
   }
   if (extraction.mesh.faces.empty()) {
     throw Error("nothing is left of the surface at this target: ask for more faces, or shorter edges");
   }
-  report.edge_length = lengths[0] * frame.scale;
+  report.edge_length = fields.position.edge_length[0] * frame.scale;
 
   if (!cloud && options.graph.nodes == GraphNodes::vertices) {
     stage("singularities", [&] {
@@ -284,9 +289,9 @@ RemeshResult remesh(Mesh input, const RemeshOptions& options, const Context& con
   stage("smoothing", [&] {
     SmoothOptions smoothing;
     smoothing.iterations = options.smoothing;
-    if (!lengths.uniform() && options.graph.nodes == GraphNodes::vertices) {
+    if (!fields.position.edge_length.uniform() && options.graph.nodes == GraphNodes::vertices) {
       std::vector<float> sizes;
-      for (const Index node : extraction.nodes) sizes.push_back(lengths[node]);
+      for (const Index node : extraction.nodes) sizes.push_back(fields.position.edge_length[node]);
       smoothing.relative_size = EdgeLength(std::move(sizes));
     }
     smooth(extraction, surface, graph, smoothing, context);

@@ -124,7 +124,7 @@ Rail attach_to_border(const Extraction& extraction, const Mesh& surface, const B
   for (Index v = 0; v < mesh.positions.size(); ++v) {
     if (!rail.fixed[v]) continue;
     const Vec3& p = mesh.positions[v];
-    float best = cell * cell, best_corner = best;
+    float best = 0.5f * cell * cell, best_corner = best;
     Index corner = no_index;
     for_near(p, [&](Index b) {
       const float distance = (surface.positions[b] - p).squaredNorm();
