@@ -232,7 +232,11 @@ RemeshResult remesh(Mesh input, const RemeshOptions& options, const Context& con
   // or shorter, and the nearest is kept.
   ExtractOptions extract;
   extract.energy = options.position_energy;
-  extract.border = border_of_graph(surface, graph, options.graph.nodes);
+  if (!cloud && options.graph.nodes == GraphNodes::vertices) {
+    extract.surface = &surface;
+  } else {
+    extract.border = border_of_graph(surface, graph, options.graph.nodes);
+  }
   if (cloud) extract.largest_filled_gap = 12;
   Extraction extraction;
   const bool given = options.fields != nullptr && !options.fields->position.points.empty();

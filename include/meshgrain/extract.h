@@ -11,6 +11,10 @@ namespace meshgrain {
 struct ExtractOptions {
   /// How the integer jumps across edges are found: that of the position field's solver.
   PositionEnergy energy = PositionEnergy::extrinsic;
+  /// The triangle mesh whose vertices are the graph's nodes, if there is one: its own edges are then
+  /// collapsed, and the output has its components, borders and genus. Without it the paper's way is
+  /// taken, which needs nothing but the graph; the options below are for that.
+  const Mesh* surface = nullptr;
   /// Edges of the graph that lie on the border of the surface: where the output is open. Without any,
   /// gaps that the walk leaves are closed.
   std::vector<std::array<Index, 2>> border;

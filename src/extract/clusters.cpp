@@ -140,6 +140,53 @@ void sort_unique(std::vector<std::array<Index, 2>>& edges) {
 
 }  // namespace
 
+Clusters average_clusters(const Graph& graph, const PositionField& position,
+                          std::span<const Index> nodes, std::span<const Index> cluster_of,
+                          std::span<const std::uint8_t> border, std::size_t count) {
+  Clusters result;
+  result.positions.assign(count, Vec3::Zero());
+  result.normals.assign(count, Vec3::Zero());
+  result.on_border.assign(count, 0);
+  result.cover.assign(count, 0);
+  std::vector<float> weight(count, 0);
+  for (std::size_t m = 0; m < nodes.size(); ++m) {
+    const Index c = cluster_of[m], i = nodes[m];
+    if (c == no_index) continue;
+    const float beta = position.edge_length[i] / 3;
+    // Never quite zero: a cluster whose members are all far from its lattice point needs a place too.
+    const float alpha = std::max(
+        std::exp(-(position.points[i] - graph.positions[i]).squaredNorm() / (beta * beta)), 1e-20f);
+    result.positions[c] += alpha * position.points[i];
+    result.normals[c] += alpha * graph.normals[i];
+    weight[c] += alpha;
+    result.on_border[c] |= border[m];
+    const float rho = position.edge_length[i];
+    result.cover[c] += graph.areas[i] / (rho * rho);
+  }
+  for (std::size_t c = 0; c < count; ++c) {
+    result.positions[c] /= weight[c];
+    const float length = result.normals[c].norm();
+    result.normals[c] = length > 0 ? Vec3(result.normals[c] / length) : Vec3(Vec3::UnitZ());
+  }
+
+  const float mean_cover =
+      std::accumulate(result.cover.begin(), result.cover.end(), 0.0f) / static_cast<float>(count);
+  for (float& cover : result.cover) cover /= mean_cover;
+
+  result.nodes.assign(count, no_index);
+  std::vector<float> nearest(count, 0);
+  for (std::size_t m = 0; m < nodes.size(); ++m) {
+    const Index c = cluster_of[m], i = nodes[m];
+    if (c == no_index || (result.on_border[c] && !border[m])) continue;
+    const float distance = (graph.positions[i] - result.positions[c]).squaredNorm();
+    if (result.nodes[c] == no_index || distance < nearest[c]) {
+      nearest[c] = distance;
+      result.nodes[c] = i;
+    }
+  }
+  return result;
+}
+
 Clusters collapse_clusters(const Graph& graph, const OrientationField& orientation,
                            const PositionField& position, const ExtractOptions& options,
                            const Context& context) {
@@ -170,43 +217,17 @@ Clusters collapse_clusters(const Graph& graph, const OrientationField& orientati
   }
   const double mean = std::accumulate(cover.begin(), cover.end(), 0.0) / std::max<Index>(count, 1);
 
-  Clusters result;
   std::vector<Index> kept(count, no_index);
   Index kept_count = 0;
   for (Index c = 0; c < count; ++c) {
     if (cover[c] >= mean / 10) kept[c] = kept_count++;
   }
-  result.positions.assign(kept_count, Vec3::Zero());
-  result.normals.assign(kept_count, Vec3::Zero());
-  std::vector<float> weight(kept_count, 0);
-  for (std::size_t i = 0; i < n; ++i) {
-    Index& c = cluster_of[i];
-    c = kept[c];
-    if (c == no_index) continue;
-    const float beta = position.edge_length[i] / 3;
-    const float alpha =
-        std::exp(-(position.points[i] - graph.positions[i]).squaredNorm() / (beta * beta));
-    result.positions[c] += alpha * position.points[i];
-    result.normals[c] += alpha * graph.normals[i];
-    weight[c] += alpha;
-  }
-  for (Index c = 0; c < kept_count; ++c) {
-    result.positions[c] /= weight[c];
-    const float length = result.normals[c].norm();
-    result.normals[c] = length > 1e-6f ? Vec3(result.normals[c] / length) : Vec3(Vec3::UnitZ());
-  }
-
-  result.nodes.assign(kept_count, no_index);
-  std::vector<float> nearest(kept_count, 0);
-  for (Index i = 0; i < n; ++i) {
-    const Index c = cluster_of[i];
-    if (c == no_index) continue;
-    const float distance = (graph.positions[i] - result.positions[c]).squaredNorm();
-    if (result.nodes[c] == no_index || distance < nearest[c]) {
-      nearest[c] = distance;
-      result.nodes[c] = i;
-    }
-  }
+  for (Index& c : cluster_of) c = kept[c];
+  std::vector<std::uint8_t> border(n, 0);
+  for (const auto& [i, j] : options.border) border[i] = border[j] = 1;
+  std::vector<Index> nodes(n);
+  std::iota(nodes.begin(), nodes.end(), Index{0});
+  Clusters result = average_clusters(graph, position, nodes, cluster_of, border, kept_count);
 
   const auto clusters_of_edge = [&](Index i, Index j) {
     const Index a = cluster_of[i], b = cluster_of[j];
@@ -220,11 +241,7 @@ Clusters collapse_clusters(const Graph& graph, const OrientationField& orientati
     }
   }
   sort_unique(result.edges);
-  result.on_border.assign(kept_count, 0);
   for (const auto& [i, j] : options.border) {
-    for (const Index node : {i, j}) {
-      if (cluster_of[node] != no_index) result.on_border[cluster_of[node]] = 1;
-    }
     const auto edge = clusters_of_edge(i, j);
     if (edge[1] != no_index && edge[0] != edge[1]) result.border.push_back(edge);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "meshgrain/extract.h"
@@ -11,12 +12,21 @@ namespace meshgrain {
 struct Clusters {
   std::vector<Vec3> positions;
   std::vector<Vec3> normals;
+  std::vector<float> cover;                  // area, in units of a lattice cell as large as the mean
   std::vector<Index> nodes;                  // the member nearest to the position
   std::vector<std::array<Index, 2>> edges;   // sorted, first < second
   std::vector<std::array<Index, 2>> border;  // those of the edges that lie on the border, sorted
   std::vector<std::uint8_t> on_border;       // whether a cluster has nodes on the border
 };
 
+/// Positions, normals and nearest nodes of `count` clusters (section 3.8). Member m is node
+/// `nodes[m]` and belongs to cluster `cluster_of[m]` (or to none: no_index). Where a cluster has
+/// members for which `border` is set, its nearest node is one of those.
+Clusters average_clusters(const Graph& graph, const PositionField& position,
+                          std::span<const Index> nodes, std::span<const Index> cluster_of,
+                          std::span<const std::uint8_t> border, std::size_t count);
+
+/// The graph way, for point clouds and everything else: no mesh is needed.
 Clusters collapse_clusters(const Graph& graph, const OrientationField& orientation,
                            const PositionField& position, const ExtractOptions& options,
                            const Context& context);

@@ -4,9 +4,10 @@
 #include <utility>
 
 #include "extract/clusters.h"
-#include "extract/face_repair.h"
-#include "extract/polygon_map.h"
 #include "extract/drop_unused.h"
+#include "extract/face_repair.h"
+#include "extract/mesh_clusters.h"
+#include "extract/polygon_map.h"
 #include "util/union_find.h"
 
 namespace meshgrain {
@@ -88,14 +89,13 @@ Extraction collect_faces(const PolygonMap& map, const FaceRepair& repair,
   return result;
 }
 
-}  // namespace
-
-Extraction extract_mesh(const Graph& graph, const OrientationField& orientation,
-                        const PositionField& position, const ExtractOptions& options,
-                        const Context& context) {
+/// The paper's way: clusters of the graph, and faces found by walking around them.
+Extraction extract_from_graph(const Graph& graph, const OrientationField& orientation,
+                              const PositionField& position, const ExtractOptions& options,
+                              const Context& context) {
   Clusters clusters = collapse_clusters(graph, orientation, position, options, context);
   PolygonMap map(clusters.positions, clusters.normals, clusters.edges);
-  FaceRepair repair(map, clusters, position.posy);
+  FaceRepair repair(map, clusters, position.posy, std::vector<std::uint8_t>(map.halfedges(), 0));
   repair.remove_dangling();
   repair.cut_pinches();
   repair.find_holes(mark(clusters.edges, clusters.border), clusters.on_border,
@@ -108,9 +108,43 @@ Extraction extract_mesh(const Graph& graph, const OrientationField& orientation,
   } else {
     repair.flip_edges();
   }
-  context.progress("extraction", 1);
   Extraction result = collect_faces(map, repair, clusters);
   drop_fragments(result, graph);
+  return result;
+}
+
+/// The way over the mesh itself, which keeps its topology.
+Extraction extract_from_mesh(const Graph& graph, const OrientationField& orientation,
+                             const PositionField& position, const ExtractOptions& options,
+                             const Context& context) {
+  CollapsedMesh collapsed =
+      collapse_mesh(*options.surface, graph, orientation, position, options.energy, context);
+  FaceRepair repair(collapsed.map, collapsed.clusters, position.posy, std::move(collapsed.holes));
+  repair.contract_short_edges(position.edge_length, collapsed.clusters.cover);
+  for (int round = 0; round < 3; ++round) {
+    repair.flip_bad_triangles();
+    repair.untangle();
+  }
+  if (position.posy == 4) {
+    repair.remove_diagonals(collapsed.jumps);
+    repair.remove_superfluous_edges();
+    repair.remove_doublets();
+  } else {
+    repair.flip_edges();
+  }
+  return collect_faces(collapsed.map, repair, collapsed.clusters);
+}
+
+}  // namespace
+
+Extraction extract_mesh(const Graph& graph, const OrientationField& orientation,
+                        const PositionField& position, const ExtractOptions& options,
+                        const Context& context) {
+  context.progress("extraction", 0);
+  Extraction result = options.surface != nullptr
+                          ? extract_from_mesh(graph, orientation, position, options, context)
+                          : extract_from_graph(graph, orientation, position, options, context);
+  context.progress("extraction", 1);
   return result;
 }
 

@@ -7,14 +7,15 @@
 #include <numbers>
 #include <tuple>
 
+#include "extract/link_condition.h"
+
 namespace meshgrain {
 
 using std::numbers::pi;
 
-FaceRepair::FaceRepair(PolygonMap& map, Clusters& clusters, int posy)
-    : map_(map), clusters_(clusters), posy_(posy) {
-  hole_.assign(map.halfedges(), 0);
-}
+FaceRepair::FaceRepair(PolygonMap& map, Clusters& clusters, int posy,
+                       std::vector<std::uint8_t> holes)
+    : map_(map), clusters_(clusters), posy_(posy), hole_(std::move(holes)) {}
 
 /// The angle at v from one neighbour counterclockwise to another, in the tangent plane: 0 to 2 pi.
 double FaceRepair::angle(Index v, Index from, Index to) const {
@@ -141,6 +142,163 @@ void FaceRepair::find_holes(std::span<const std::uint8_t> border_edges,
   }
 }
 
+/// 1 for an equilateral triangle, 0 for a degenerate one, negative for one turned over.
+double FaceRepair::triangle_quality(Index a, Index b, Index c) const {
+  const Vec3 &p = clusters_.positions[a], &q = clusters_.positions[b], &r = clusters_.positions[c];
+  const Vec3 normal = (q - p).cross(r - p);
+  const Vec3 up = clusters_.normals[a] + clusters_.normals[b] + clusters_.normals[c];
+  const double squares = (q - p).squaredNorm() + (r - q).squaredNorm() + (p - r).squaredNorm();
+  if (!(squares > 0)) return 0;
+  const double area = 2 * std::numbers::sqrt3 * normal.norm() / squares;
+  return normal.dot(up) < 0 ? -area : area;
+}
+
+/// The least quality of the triangles around a vertex.
+double FaceRepair::star_quality(Index vertex) const {
+  double worst = 1;
+  const Index start = map_.leaving(vertex);
+  Index h = start;
+  do {
+    if (!hole_[h]) {
+      worst = std::min(worst, triangle_quality(vertex, map_.target(h), map_.target(map_.next(h))));
+    }
+    h = map_.around(h);
+  } while (h != start);
+  return worst;
+}
+
+/// The least quality of the triangles around the target of h once they are at its origin.
+double FaceRepair::contracted_quality(Index h) const {
+  const Index t = PolygonMap::twin(h), to = map_.origin(h);
+  double worst = 1;
+  for (Index g = map_.around(t); g != t; g = map_.around(g)) {
+    const Index c = map_.target(g), d = map_.target(map_.next(g));
+    if (hole_[g] || c == to || d == to) continue;
+    worst = std::min(worst, triangle_quality(to, c, d));
+  }
+  return worst;
+}
+
+/// Contracts an edge between triangles: the target of h vanishes, and so do the triangles beside it.
+void FaceRepair::contract(Index h) {
+  const Index t = PolygonMap::twin(h);
+  const Index gone[2] = {map_.next(h), map_.prev(t)}, kept[2] = {map_.prev(h), map_.next(t)};
+  const bool inside[2] = {!hole_[h], !hole_[t]};
+  map_.contract_edge(h);
+  for (int side = 0; side < 2; ++side) {
+    if (!inside[side]) continue;
+    hole_[kept[side]] = hole_[PolygonMap::twin(gone[side])];
+    map_.remove_edge(gone[side]);
+  }
+}
+
+void FaceRepair::untangle() {
+  LinkCondition link;
+  for (int round = 0; round < 10; ++round) {
+    bool changed = false;
+    for (Index v = 0; v < map_.vertices(); ++v) {
+      if (map_.leaving(v) == no_index) continue;
+      const double before = star_quality(v);
+      if (before > 0.1) continue;
+      const bool rim = clusters_.on_border[v];
+      Index best = no_index;
+      double best_quality = before + 0.05;
+      if (!rim) {
+        const Vec3 old = clusters_.positions[v];
+        Vec3 sum = Vec3::Zero();
+        const Index start = map_.leaving(v);
+        Index h = start;
+        do {
+          sum += clusters_.positions[map_.target(h)];
+          h = map_.around(h);
+        } while (h != start);
+        clusters_.positions[v] = sum / static_cast<float>(map_.valence(v));
+        if (const double moved = star_quality(v); moved > best_quality) {
+          changed = true;
+          continue;
+        }
+        clusters_.positions[v] = old;
+      }
+      const Index start = map_.leaving(v);
+      Index h = start;
+      do {
+        const Index into = PolygonMap::twin(h);  // from the neighbour to v, which would vanish
+        const bool along = hole_[h] || hole_[into];
+        if ((!rim || along) && link.holds(map_, hole_, into)) {
+          if (const double quality = contracted_quality(into); quality > best_quality) {
+            best_quality = quality;
+            best = into;
+          }
+        }
+        h = map_.around(h);
+      } while (h != start);
+      if (best == no_index) continue;
+      contract(best);
+      changed = true;
+    }
+    if (!changed) return;
+  }
+}
+
+void FaceRepair::contract_short_edges(const EdgeLength& edge_length,
+                                      const std::vector<float>& cover) {
+  LinkCondition link;
+  struct Candidate {
+    float length;
+    Index h;  // its target vanishes
+    bool operator<(const Candidate& o) const {
+      return std::tie(length, h) < std::tie(o.length, o.h);
+    }
+  };
+  for (bool again = true; again;) {
+    again = false;
+    std::vector<Candidate> candidates;
+    for (Index h = 0; h < map_.halfedges(); ++h) {
+      if (map_.removed(h)) continue;
+      const Index a = map_.origin(h), b = map_.target(h);
+      if (cover[b] > cover[a] || (cover[a] == cover[b] && b < a)) continue;
+      const float length = (clusters_.positions[a] - clusters_.positions[b]).norm() /
+                           edge_length[clusters_.nodes[a]];
+      if (length < (cover[b] < 0.1f ? 0.8f : 0.4f)) candidates.push_back({length, h});
+    }
+    std::sort(candidates.begin(), candidates.end());
+    for (const Candidate& c : candidates) {
+      if (map_.removed(c.h) || !link.holds(map_, hole_, c.h)) continue;
+      const Index t = PolygonMap::twin(c.h);
+      // A vertex on the border stays there.
+      if (clusters_.on_border[map_.origin(t)] && !clusters_.on_border[map_.origin(c.h)]) continue;
+      // No triangle may turn over by it, unless it was worse before.
+      const double after = contracted_quality(c.h);
+      if (after < 0.1 && after < star_quality(map_.origin(t))) continue;
+      contract(c.h);
+      again = true;
+    }
+  }
+}
+
+void FaceRepair::flip_bad_triangles() {
+  for (int round = 0; round < 20; ++round) {
+    bool changed = false;
+    for (Index h = 0; h < map_.halfedges(); h += 2) {
+      const Index t = PolygonMap::twin(h);
+      if (map_.removed(h) || hole_[h] || hole_[t]) continue;
+      const Index a = map_.origin(h), b = map_.origin(t);
+      const Index c = map_.origin(map_.prev(h)), d = map_.origin(map_.prev(t));
+      const double before = std::min(triangle_quality(a, b, c), triangle_quality(b, a, d));
+      if (before > 0.3 || c == d || map_.adjacent(c, d)) continue;
+      if (map_.valence(a) <= 3 || map_.valence(b) <= 3) continue;
+      const double after = std::min(triangle_quality(a, d, c), triangle_quality(d, b, c));
+      if (after < before + 0.05) continue;
+      const Index from = map_.prev(h), to = map_.prev(t);
+      map_.remove_edge(h);
+      map_.add_edge(from, to);
+      hole_.resize(map_.halfedges(), 0);
+      changed = true;
+    }
+    if (!changed) return;
+  }
+}
+
 void FaceRepair::remove_doublets() {
   for (bool again = true; again;) {
     again = false;
@@ -149,8 +307,16 @@ void FaceRepair::remove_doublets() {
       if (h == no_index || map_.valence(v) != 2) continue;
       const Index g = map_.around(h);
       if (hole_[h] || hole_[g]) continue;
-      const std::size_t merged = map_.degree(h) + map_.degree(g) - 4;
-      if (merged < 3) continue;
+      // The faces must share nothing but the two edges, or what they become would touch itself.
+      std::vector<Index> merged;
+      for (Index k = map_.next(h); k != map_.prev(h); k = map_.next(k)) merged.push_back(map_.target(k));
+      for (Index k = map_.next(g); k != map_.prev(g); k = map_.next(k)) merged.push_back(map_.target(k));
+      std::sort(merged.begin(), merged.end());
+      if (merged.size() < 3 || std::adjacent_find(merged.begin(), merged.end()) != merged.end()) {
+        continue;
+      }
+      // Both ends lose an edge.
+      if (map_.valence(map_.target(h)) <= 3 || map_.valence(map_.target(g)) <= 3) continue;
       map_.remove_edge(h);
       map_.remove_edge(g);
       again = true;
@@ -191,6 +357,23 @@ double FaceRepair::removal_cost(Index h) const {
   std::sort(sorted.begin(), sorted.end());
   if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) return 1e30;
   return polygon_cost(corners);
+}
+
+void FaceRepair::remove_diagonals(std::span<const std::array<int, 2>> jumps) {
+  std::vector<std::pair<double, Index>> candidates;
+  for (Index h = 0; h < 2 * jumps.size(); h += 2) {
+    const auto& t = jumps[h / 2];
+    if (std::abs(t[0]) != 1 || std::abs(t[1]) != 1) continue;
+    if (map_.removed(h) || hole_[h] || hole_[h + 1]) continue;
+    const double cost = removal_cost(h);
+    if (cost < 1e9) candidates.emplace_back(cost, h);
+  }
+  std::sort(candidates.begin(), candidates.end());
+  for (const auto& [cost, h] : candidates) {
+    if (map_.degree(h) != 3 || map_.degree(h + 1) != 3) continue;
+    if (map_.valence(map_.origin(h)) <= 3 || map_.valence(map_.target(h)) <= 3) continue;
+    if (removal_cost(h) < 1e9) map_.remove_edge(h);
+  }
 }
 
 void FaceRepair::remove_superfluous_edges() {

@@ -9,11 +9,11 @@
 namespace meshgrain {
 
 /// Turns the orbits of a map into the faces that a position field of symmetry `posy` asks for:
-/// triangles for 6, mostly quads for 4. `holes` afterwards says, for each halfedge, whether its orbit
-/// is open.
+/// triangles for 6, mostly quads for 4.
 class FaceRepair {
  public:
-  FaceRepair(PolygonMap& map, Clusters& clusters, int posy);
+  /// `holes`: a flag for each halfedge, whether its orbit is open.
+  FaceRepair(PolygonMap& map, Clusters& clusters, int posy, std::vector<std::uint8_t> holes);
 
   /// Removes edges that have the same orbit on both sides: dangling ones and bridges.
   void remove_dangling();
@@ -30,8 +30,23 @@ class FaceRepair {
   /// Cuts vertices at which several holes meet, so that the faces around each are one fan.
   void part_holes();
 
+  /// Triangles only: contracts edges much shorter than the target, which lead to clusters of very few
+  /// nodes (the spurious ones of section 3.8) or hold two vertices of one lattice point apart.
+  void contract_short_edges(const EdgeLength& edge_length, const std::vector<float>& cover);
+
+  /// Triangles only: turns edges where that mends an inverted triangle or a needle.
+  void flip_bad_triangles();
+
+  /// Triangles only: where triangles are still turned over, moves their vertex into the middle of its
+  /// neighbours or contracts it into one of them, whichever leaves the best triangles.
+  void untangle();
+
   /// Removes interior vertices with two edges, which no regular mesh has.
   void remove_doublets();
+
+  /// Quads: removes the edges between pairs of triangles that the lattice has as a square's diagonal
+  /// (`jumps`: one an edge), the best squares first.
+  void remove_diagonals(std::span<const std::array<int, 2>> jumps);
 
   /// Quads: removes edges as long as that leaves fewer irregular faces and vertices, the greatest gain
   /// first: between the halves of a quad, or the long side of a flat triangle, which makes a T-junction
@@ -57,6 +72,10 @@ class FaceRepair {
   double removal_cost(Index h) const;
   int flip_gain(Index h) const;
   bool split_once(Index h);
+  double triangle_quality(Index a, Index b, Index c) const;
+  double star_quality(Index vertex) const;
+  double contracted_quality(Index h) const;
+  void contract(Index h);
   void add_hub(Index h);
   void cut(Index a, Index b);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "field/rosy.h"
+#include "mesh/vertex_faces.h"
 
 namespace meshgrain {
 
@@ -52,6 +53,92 @@ PolygonMap::PolygonMap(std::span<const Vec3> positions, std::span<const Vec3> no
       prev_[departing] = arriving;
     }
     if (!star.empty()) leaving_[v] = star[0].second;
+  }
+}
+
+PolygonMap::PolygonMap(const Mesh& mesh, std::vector<Index>& sources,
+                       std::vector<std::uint8_t>& holes, const Context& context) {
+  const Faces& faces = mesh.faces;
+  const VertexFaces around_vertex = vertex_faces(mesh, context);
+  const auto corners = faces.corners();
+  std::vector<Index> halfedge_of(corners.size(), no_index);  // of the edge that starts at a corner
+  const auto corner_of = [&](Index face, Index from, Index to) {
+    const auto face_corners = faces[face];
+    for (std::size_t k = 0; k < face_corners.size(); ++k) {
+      if (face_corners[k] == from && face_corners[(k + 1) % face_corners.size()] == to) {
+        return static_cast<Index>(faces.first(face) + k);
+      }
+    }
+    return no_index;
+  };
+  /// The only face that has the edge in this direction, as the corner where it starts.
+  const auto single = [&](Index from, Index to) {
+    Index found = no_index;
+    for (const Index f : around_vertex[from]) {
+      const Index corner = corner_of(f, from, to);
+      if (corner == no_index) continue;
+      if (found != no_index) return no_index;
+      found = corner;
+    }
+    return found;
+  };
+  const auto add_pair = [&] {
+    const auto h = static_cast<Index>(next_.size());
+    next_.insert(next_.end(), 2, no_index);
+    prev_.insert(prev_.end(), 2, no_index);
+    return h;
+  };
+  for (Index f = 0; f < faces.size(); ++f) {
+    const auto face = faces[f];
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const std::size_t corner = faces.first(f) + k;
+      if (halfedge_of[corner] != no_index) continue;
+      const Index a = face[k], b = face[(k + 1) % face.size()];
+      const Index opposite = single(a, b) == corner ? single(b, a) : no_index;
+      const Index h = add_pair();
+      halfedge_of[corner] = h;
+      if (opposite != no_index) halfedge_of[opposite] = h + 1;
+    }
+  }
+  std::vector<Index> corner_at(next_.size(), no_index);
+  for (Index f = 0; f < faces.size(); ++f) {
+    const std::size_t first = faces.first(f), n = faces.degree(f);
+    for (std::size_t k = 0; k < n; ++k) {
+      const Index h = halfedge_of[first + k], g = halfedge_of[first + (k + 1) % n];
+      next_[h] = g;
+      prev_[g] = h;
+      corner_at[h] = static_cast<Index>(first + k);
+    }
+  }
+  // A border halfedge goes on along the border: around its target, past the faces there.
+  holes.assign(next_.size(), 0);
+  for (Index h = 0; h < next_.size(); ++h) {
+    if (corner_at[h] != no_index) continue;
+    holes[h] = 1;
+    Index g = prev_[twin(h)];
+    while (corner_at[twin(g)] != no_index) g = prev_[twin(g)];
+    next_[h] = twin(g);
+    prev_[twin(g)] = h;
+  }
+  // Vertices: one for each cycle of halfedges that leave it, in the order of the mesh's.
+  origin_.assign(next_.size(), no_index);
+  sources.clear();
+  for (Index v = 0; v < mesh.positions.size(); ++v) {
+    for (const Index f : around_vertex[v]) {
+      const auto face = faces[f];
+      for (std::size_t k = 0; k < face.size(); ++k) {
+        const Index start = halfedge_of[faces.first(f) + k];
+        if (face[k] != v || origin_[start] != no_index) continue;
+        const auto id = static_cast<Index>(leaving_.size());
+        leaving_.push_back(start);
+        sources.push_back(v);
+        Index h = start;
+        do {
+          origin_[h] = id;
+          h = around(h);
+        } while (h != start);
+      }
+    }
   }
 }
 
@@ -136,6 +223,22 @@ Index PolygonMap::add_edge(Index a, Index b) {
   return h;
 }
 
+void PolygonMap::contract_edge(Index h) {
+  const Index t = twin(h), kept = origin_[h], gone = origin_[t];
+  Index g = around(t);
+  while (g != t) {
+    origin_[g] = kept;
+    g = around(g);
+  }
+  for (const Index side : {h, t}) {
+    next_[prev_[side]] = next_[side];
+    prev_[next_[side]] = prev_[side];
+  }
+  if (leaving_[kept] == h) leaving_[kept] = next_[t] != h ? next_[t] : next_[h];
+  leaving_[gone] = no_index;
+  origin_[h] = origin_[t] = no_index;
+}
+
 Index PolygonMap::split_vertex(Index a, Index b) {
   const auto fresh = static_cast<Index>(leaving_.size());
   const Index old = origin_[a], ap = prev_[a], bp = prev_[b];
@@ -151,6 +254,39 @@ Index PolygonMap::split_vertex(Index a, Index b) {
     h = around(h);
   } while (h != a);
   return fresh;
+}
+
+PolygonMap::Renumbering PolygonMap::compact() {
+  Renumbering rank;
+  rank.vertices.assign(leaving_.size(), no_index);
+  rank.edges.assign(origin_.size() / 2, no_index);
+  Index edges = 0, vertices = 0;
+  for (Index e = 0; e < rank.edges.size(); ++e) {
+    if (!removed(2 * e)) rank.edges[e] = edges++;
+  }
+  for (Index v = 0; v < leaving_.size(); ++v) {
+    if (leaving_[v] != no_index) rank.vertices[v] = vertices++;
+  }
+  const auto moved = [&](Index h) { return 2 * rank.edges[h / 2] + h % 2; };
+  for (Index e = 0; e < rank.edges.size(); ++e) {
+    if (rank.edges[e] == no_index) continue;
+    for (Index side = 0; side < 2; ++side) {
+      const Index h = 2 * e + side, to = moved(h);
+      origin_[to] = rank.vertices[origin_[h]];
+      next_[to] = moved(next_[h]);
+      prev_[to] = moved(prev_[h]);
+    }
+  }
+  for (Index v = 0; v < leaving_.size(); ++v) {
+    if (rank.vertices[v] != no_index) leaving_[rank.vertices[v]] = moved(leaving_[v]);
+  }
+  for (auto* values : {&origin_, &next_, &prev_}) {
+    values->resize(2 * edges);
+    values->shrink_to_fit();
+  }
+  leaving_.resize(vertices);
+  rank.vertex_count = vertices;
+  return rank;
 }
 
 Index PolygonMap::add_hub(Index h) {

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
 
 namespace meshgrain {
@@ -17,6 +18,13 @@ class PolygonMap {
   PolygonMap(std::span<const Vec3> positions, std::span<const Vec3> normals,
              std::span<const std::array<Index, 2>> edges);
 
+  /// The faces of a mesh. Edges that are not between two faces of opposite direction are cut: each
+  /// side gets a border of its own. A vertex where several fans of faces meet becomes one a fan.
+  /// `sources` gets the mesh's vertex of each vertex, `holes` a flag for each halfedge outside.
+  PolygonMap(const Mesh& mesh, std::vector<Index>& sources, std::vector<std::uint8_t>& holes,
+             const Context& context);
+
+  std::size_t vertices() const { return leaving_.size(); }
   std::size_t halfedges() const { return origin_.size(); }
   bool removed(Index h) const { return origin_[h] == no_index; }
   static Index twin(Index h) { return h ^ 1; }
@@ -41,10 +49,19 @@ class PolygonMap {
   /// Adds an edge from the origin of `a` to the origin of `b`, two halfedges of one orbit. Returns
   /// the halfedge from the origin of `a`, in whose orbit `b` lies.
   Index add_edge(Index a, Index b);
+  /// Merges the target of `h` into its origin; the edge vanishes, and the orbits on its sides lose it.
+  void contract_edge(Index h);
   /// Cuts the vertex that two halfedges leave in two: the edges from `a` clockwise up to `b` go to a
   /// new vertex, which is returned. If `a` and `b` were in one orbit it becomes two, else theirs
   /// become one.
   Index split_vertex(Index a, Index b);
+  /// Drops removed edges and vertices without any, and numbers the rest anew, in their order.
+  struct Renumbering {
+    std::vector<Index> vertices, edges;  ///< From old to new; no_index if dropped.
+    std::size_t vertex_count = 0;
+  };
+  Renumbering compact();
+
   /// Puts a new vertex into h's orbit, joined to all of its corners. Returns the vertex.
   Index add_hub(Index h);
 

@@ -39,6 +39,26 @@ class BorderLine {
   bool is_corner(Index vertex) const { return corner_[vertex]; }
   std::span<const Index> vertices() const { return border_; }
 
+  /// Calls `body` for the corners within `distance` of a border vertex, along the border.
+  template <typename Body>
+  void for_corners_near(Index vertex, float distance, const Body& body) const {
+    if (corner_[vertex]) body(vertex);
+    for (const Index first : neighbors_[vertex]) {
+      float walked = 0;
+      Index previous = vertex, current = first;
+      while (current != vertex) {
+        walked += (surface_.positions[current] - surface_.positions[previous]).norm();
+        if (walked > distance) break;
+        if (corner_[current]) body(current);
+        const auto& around = neighbors_[current];
+        const Index next = around[0] == previous ? around[1] : around[0];
+        if (next == previous) break;
+        previous = current;
+        current = next;
+      }
+    }
+  }
+
   /// The nearest point of the border line, walking from `seed` (a vertex of the border).
   Vec3 project(const Vec3& p, Index& seed) const;
 

@@ -84,7 +84,8 @@ struct Rail {
   std::vector<std::uint8_t> fixed;
 };
 
-Rail attach_to_border(const Extraction& extraction, const Mesh& surface, const BorderLine& border) {
+Rail attach_to_border(const Extraction& extraction, const Mesh& surface,
+                      const BorderLine& border) {
   const Mesh& mesh = extraction.mesh;
   Rail rail;
   rail.seed.assign(mesh.positions.size(), no_index);
@@ -98,54 +99,22 @@ Rail attach_to_border(const Extraction& extraction, const Mesh& surface, const B
   if (edges.empty() || border.empty()) return rail;
   mean /= static_cast<float>(edges.size());
 
-  // Nearest vertices of the input's border, by a grid of cells as wide as an output edge.
-  const float cell = std::max(mean, 1e-30f);
-  const auto key = [&](const Vec3& p, int dx, int dy, int dz) {
-    const Vec3 c = p / cell;
-    return std::array<int, 3>{static_cast<int>(std::floor(c.x())) + dx,
-                              static_cast<int>(std::floor(c.y())) + dy,
-                              static_cast<int>(std::floor(c.z())) + dz};
-  };
-  std::vector<std::pair<std::array<int, 3>, Index>> grid;
-  for (const Index v : border.vertices()) grid.emplace_back(key(surface.positions[v], 0, 0, 0), v);
-  std::sort(grid.begin(), grid.end());
-  const auto for_near = [&](const Vec3& p, const auto& body) {
-    for (int dx = -1; dx <= 1; ++dx) {
-      for (int dy = -1; dy <= 1; ++dy) {
-        for (int dz = -1; dz <= 1; ++dz) {
-          const auto k = key(p, dx, dy, dz);
-          auto it = std::lower_bound(grid.begin(), grid.end(), std::make_pair(k, Index{0}));
-          for (; it != grid.end() && it->first == k; ++it) body(it->second);
-        }
-      }
-    }
-  };
+  // Clusters on the border have their nearest node there. The nearest output vertex of each corner
+  // takes its place.
   std::vector<Index> owner(surface.positions.size(), no_index);
   for (Index v = 0; v < mesh.positions.size(); ++v) {
-    if (!rail.fixed[v]) continue;
-    const Vec3& p = mesh.positions[v];
-    float best = 0.5f * cell * cell, best_corner = best;
-    Index corner = no_index;
-    for_near(p, [&](Index b) {
-      const float distance = (surface.positions[b] - p).squaredNorm();
-      if (distance < best) {
-        best = distance;
-        rail.seed[v] = b;
-      }
-      if (border.is_corner(b) && distance < best_corner) {
-        best_corner = distance;
-        corner = b;
-      }
-    });
-    if (rail.seed[v] == no_index) continue;
+    const Index seed = extraction.nodes[v];
+    if (!rail.fixed[v] || !border.contains(seed)) continue;
     rail.fixed[v] = 0;
-    if (corner == no_index) continue;
-    // The nearest output vertex of each corner takes its place.
-    Index& nearest = owner[corner];
-    if (nearest == no_index || (mesh.positions[nearest] - surface.positions[corner]).squaredNorm() >
-                                   (p - surface.positions[corner]).squaredNorm()) {
-      nearest = v;
-    }
+    rail.seed[v] = seed;
+    border.for_corners_near(seed, mean, [&](Index corner) {
+      Index& nearest = owner[corner];
+      const auto distance = [&](Index w) {
+        return (mesh.positions[w] - surface.positions[corner]).squaredNorm();
+      };
+      if (distance(v) > mean * mean) return;
+      if (nearest == no_index || distance(v) < distance(nearest)) nearest = v;
+    });
   }
   for (const Index b : border.vertices()) {
     if (owner[b] == no_index) continue;
