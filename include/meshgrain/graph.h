@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,12 @@ struct Graph {
     return {neighbors.data() + offsets[i], offsets[i + 1] - offsets[i]};
   }
   float weight(std::size_t entry) const { return weights.empty() ? 1.0f : weights[entry]; }
+  /// The place of `j`, a neighbour of i, in `neighbors`.
+  std::size_t entry(Index i, Index j) const {
+    const auto own = neighbors_of(i);
+    const auto it = std::lower_bound(own.begin(), own.end(), j);
+    return offsets[i] + static_cast<std::size_t>(it - own.begin());
+  }
 };
 
 enum class GraphNodes {

@@ -87,6 +87,8 @@ class Multiresolution {
   void set_values(std::vector<Value> values) {
     values_ = std::move(values);
     integers_.clear();
+    active_.clear();
+    held_.clear();
     level_ = 0;
     sweep_ = options_.sweeps;
     enter_level();
@@ -108,6 +110,8 @@ class Multiresolution {
   }
 
   void freeze_integers(const Context& context) {
+    active_.clear();  // of a restart on a region
+    held_.clear();
     const Graph& finest = hierarchy_.levels[0];
     integers_.resize(finest.neighbors.size());
     context.for_ranges(finest.size(), grain, [&](std::size_t begin, std::size_t end) {

@@ -101,14 +101,20 @@ class OrientationKernel {
   }
 
   /// With integers held, the mean of the neighbours, each turned back by k_ij: the exact minimiser of
-  /// the energy of chords, which agrees with that of angles up to fourth order.
+  /// the energy of chords, which agrees with that of angles up to fourth order. The convex energy's
+  /// minimiser is the mean itself, of any length.
   Vec3 relax_frozen(Index i, const Vec3* field, const Rotations* integers) const {
     const Vec3& n = graph_->normals[i];
     Vec3 sum = Vec3::Zero();
+    float total = 0;
     for (Index e = graph_->offsets[i]; e < graph_->offsets[i + 1]; ++e) {
       const auto [a, b] = matched_pair(i, e, field, integers[e]);
       const Vec3 back = Group::rotate(project_to_plane(b, n), n, Group::inverse(integers[e].i));
       sum += graph_->weight(e) * back;
+      total += graph_->weight(e);
+    }
+    if constexpr (E == OrientationEnergy::convex) {
+      return total > 0 ? constrain(i, sum / total) : field[i];
     }
     return constrain(i, normalized_or(sum, field[i]));
   }

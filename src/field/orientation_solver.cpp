@@ -28,8 +28,11 @@ class Solver final : public OrientationSolver {
 
   OrientationField field() const override {
     OrientationField field{N, iteration_.values()};
+    // Only the convex energy leaves the length free. Values that are unit stay as they are, to the
+    // last bit, so that field() gives what set_field() took.
     for (Vec3& d : field.directions) {
-      if (const float length = d.norm(); length > 0) d /= length;
+      const float length = d.norm();
+      if (length > 0 && std::fabs(length - 1) > 1e-5f) d /= length;
     }
     return field;
   }

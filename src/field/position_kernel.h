@@ -100,18 +100,29 @@ class PositionKernel {
     }
   }
 
-  /// With integers held, the mean of the neighbours' points less our own translation: the exact
-  /// minimiser within the tangent plane.
+  /// With integers held, the exact minimiser within the tangent plane: the mean of the neighbours'
+  /// points less our own translation, by the integers of both directions of each edge, which need not
+  /// ask for the same where the lattices of its ends differ.
   Vec3 relax_frozen(Index i, const Vec3* field, const Translations* integers) const {
     Vec3 sum = Vec3::Zero();
     float total = 0;
+    const auto add = [&](const Vec3& offset, float weight, float rho) {
+      sum += weight / (rho * rho) * offset;
+      total += weight / (rho * rho);
+    };
     for (Index e = graph_->offsets[i]; e < graph_->offsets[i + 1]; ++e) {
-      const float w = graph_->weight(e);
+      const Index j = graph_->neighbors[e];
       const auto [own, other] = matched_pair(i, e, field, integers[e]);
-      sum += w * (other - (own - field[i]));
-      total += w;
+      add(other - own, graph_->weight(e), frame_->edge_length[i]);
+      const std::size_t back = graph_->entry(j, i);
+      const auto [theirs, ours] = matched_pair(j, back, field, integers[back]);
+      Vec3 offset = theirs - ours;
+      if constexpr (E == PositionEnergy::intrinsic) {
+        offset = transport(offset, graph_->normals[j], graph_->normals[i]);
+      }
+      add(offset, graph_->weight(back), frame_->edge_length[j]);
     }
-    return total > 0 ? constrain(i, project(i, sum / total)) : field[i];
+    return total > 0 ? constrain(i, project(i, field[i] + sum / total)) : field[i];
   }
 
   double energy_frozen(Index i, const Vec3* field, const Translations* integers) const {
@@ -137,11 +148,12 @@ class PositionKernel {
     return p - graph_->normals[i] * graph_->normals[i].dot(p - graph_->positions[i]);
   }
 
-  /// p_ji: the neighbour's point unfolded into the tangent plane of i.
+  /// p_ji: the neighbour's point unfolded into the tangent plane of i. Projected, as q_ij lies in both
+  /// planes only as far as its epsilon lets it: parallel planes have no common point.
   Vec3 unfolded(Index i, Index j, const Vec3* field) const {
     const Vec3 &ni = graph_->normals[i], &nj = graph_->normals[j];
     const Vec3 q = intermediate_position(graph_->positions[i], ni, graph_->positions[j], nj);
-    return q + transport(field[j] - q, nj, ni);
+    return project(i, q + transport(field[j] - q, nj, ni));
   }
 
   /// T(p_ji, n_i, o_i, t_ij): of the lattice of i put through p_ji, the point nearest to p_i.
@@ -170,8 +182,8 @@ class PositionKernel {
     return (own - other).squaredNorm() / (rho * rho);
   }
 
-  /// Section 3.7: between the value found and the nearest point of the constraint's line that the
-  /// lattice could have.
+  /// Section 3.7: between the value found and its projection onto the plane spanned by the normal and
+  /// the constraint's line (or, without a direction, the constraint's point).
   Vec3 constrain(Index i, const Vec3& p) const {
     if (constraints_->strengths.empty() || constraints_->strengths[i] == 0) return p;
     const Vec3 &c = constraints_->points[i], &d = constraints_->directions[i];
@@ -180,8 +192,11 @@ class PositionKernel {
     const Vec3 x = graph_->positions[i];
     const Vec3 foot = d.isZero() ? c : Vec3(c + d * d.dot(x - c));
     const Vec3 own = lattice.point(lattice.round(foot));
-    const Vec3 target = d.isZero() ? c : Vec3(c + d * d.dot(own - c));
-    return project(i, own + constraints_->strengths[i] * (target - own));
+    // A line that does not lie in the tangent plane must not pull along itself, only sideways.
+    const Vec3 across = graph_->normals[i].cross(d);
+    const float square = across.squaredNorm();
+    const Vec3 offset = square > 1e-6f ? Vec3(across * (across.dot(c - own) / square)) : Vec3(c - own);
+    return project(i, own + constraints_->strengths[i] * offset);
   }
 
   const Graph* graph_;

@@ -189,7 +189,7 @@ Graph cloud_graph(const Mesh& cloud, const GraphOptions& options, const Context&
   // A point stands for the disk that reaches half way to its neighbours: exact enough for merging
   // by area, and in the mean right for a target count.
   graph.areas.resize(n);
-  if (options.weights == GraphWeights::geometric) graph.weights.resize(graph.neighbors.size());
+  std::vector<float> scale(n, 0);  // mean squared distance to the neighbours
   context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto neighbors = graph.neighbors_of(i);
@@ -202,11 +202,20 @@ Graph cloud_graph(const Mesh& cloud, const GraphOptions& options, const Context&
       const float count = static_cast<float>(neighbors.size());
       const float mean = count > 0 ? squares / count : 0.0f;
       graph.areas[i] = 3.14159265f * 2 * mean / (count + 1);
-      if (graph.weights.empty()) continue;
+      scale[i] = mean;
+    }
+  });
+  if (options.weights == GraphWeights::uniform) return graph;
+  graph.weights.resize(graph.neighbors.size());
+  context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
       for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
-        // The heat kernel of Belkin et al. 2009; symmetric up to the choice of the scale.
-        const float d = (graph.positions[graph.neighbors[e]] - graph.positions[i]).squaredNorm();
-        graph.weights[e] = mean > 0 ? std::max(std::exp(-d / (2 * mean)), 0.01f) : 1.0f;
+        // The heat kernel of Belkin et al. 2009, at the mean of both ends' scales: weights must be the
+        // same from either end, or there is no energy that the local steps lower.
+        const Index j = graph.neighbors[e];
+        const float d = (graph.positions[j] - graph.positions[i]).squaredNorm();
+        const float both = scale[i] + scale[j];
+        graph.weights[e] = both > 0 ? std::max(std::exp(-d / both), 0.01f) : 1.0f;
       }
     }
   });

@@ -1,0 +1,268 @@
+#include "meshgrain/extract.h"
+
+#include <gtest/gtest.h>
+
+#include "made_fields.h"
+#include "made_points.h"
+#include "mesh/border.h"
+#include "meshgrain/finish.h"
+#include "meshgrain/remesh.h"
+#include "meshgrain/shapes.h"
+#include "meshgrain/statistics.h"
+#include "meshgrain/surface.h"
+
+namespace meshgrain {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// With the border held, a square plate comes back as its grid: all quads, all interior vertices
+/// regular, the exact count, and the corners where they were.
+TEST(Extract, APlateComesBackAsItsGrid) {
+  for (const int cells : {7, 10, 16}) {
+    SCOPED_TRACE(cells);
+    RemeshOptions options;
+    options.faces = OutputFaces::quad_dominant;
+    options.edge_length = 1.0 / cells;
+    options.align_border = true;
+    const Mesh mesh = remesh(sample_shape("plate"), options).mesh;
+    const MeshStatistics s = mesh_statistics(mesh);
+    const auto n = static_cast<std::size_t>(cells);
+    EXPECT_EQ(s.quads, n * n);
+    EXPECT_EQ(s.faces, s.quads);
+    EXPECT_EQ(s.vertices, (n + 1) * (n + 1));
+    EXPECT_EQ(s.irregular_vertices, 0u);
+    EXPECT_EQ(s.boundary_loops, 1u);
+    EXPECT_EQ(s.euler, 1);
+    EXPECT_NEAR(surface_area(mesh), 1, 1e-3);
+    EXPECT_LT(s.area_sigma, 0.02);
+    for (const float x : {-0.5f, 0.5f}) {
+      for (const float y : {-0.5f, 0.5f}) {
+        float nearest = 1;
+        for (const Vec3& p : mesh.positions)
+          nearest = std::min(nearest, (p - Vec3(x, y, 0)).norm());
+        EXPECT_LT(nearest, 1e-3f);
+      }
+    }
+  }
+}
+
+TEST(Extract, PureQuadsOfAPlateAreItsGridToo) {
+  RemeshOptions options;
+  options.edge_length = 0.05;
+  options.align_border = true;
+  const MeshStatistics s = mesh_statistics(remesh(sample_shape("plate"), options).mesh);
+  EXPECT_EQ(s.quads, 400u);
+  EXPECT_EQ(s.faces, 400u);
+  EXPECT_EQ(s.irregular_vertices, 0u);
+}
+
+/// A surface with a parametrization of whole cells along both axes.
+struct Parametrized {
+  Mesh mesh;
+  std::function<made::Coordinates(const Vec3&)> coordinates;
+  std::size_t cells_a, cells_b;
+  bool wrap_a, wrap_b;
+  float edge_length;
+};
+
+/// `nodes` a cell along either axis. For S = 6 rows are closer by sqrt(3) / 2, and each is half an
+/// edge further along.
+double row_height(int symmetry) {
+  return symmetry == 4 ? 1 : std::sqrt(0.75);
+}
+made::Coordinates lattice_coordinates(int symmetry, double along, double across, const Vec3& u) {
+  if (symmetry == 4) return {along, across, u};
+  const double b = across / std::sqrt(0.75);
+  return {along - b / 2, b, u};
+}
+
+Parametrized plane(int symmetry) {
+  const std::size_t a = 12, b = 9;
+  const Vec3 u = Vec3(0.8f, 0.6f, 0), w(-0.6f, 0.8f, 0);
+  const double rho = 0.1, height = row_height(symmetry), shear = symmetry == 4 ? 0 : 0.5;
+  return {made::grid(a * 5, b * 5, false, false,
+                     [=](double x, double y) -> Vec3 {
+                       const double q = y * static_cast<double>(b);
+                       const double p = x * static_cast<double>(a) + shear * q;
+                       return static_cast<float>(rho * p) * u +
+                              static_cast<float>(rho * height * q) * w;
+                     }),
+          [=](const Vec3& p) { return lattice_coordinates(symmetry, p.dot(u), p.dot(w), u); },
+          a,
+          b,
+          false,
+          false,
+          static_cast<float>(rho)};
+}
+
+Parametrized tube(int symmetry) {
+  const std::size_t a = 24, b = 8;
+  const double rho = 2 * pi / static_cast<double>(a), height = rho * row_height(symmetry);
+  return {made::grid(a * 5, b * 5, true, false,
+                     [=](double x, double y) -> Vec3 {
+                       return Eigen::Vector3d(std::cos(2 * pi * x), std::sin(2 * pi * x),
+                                              y * height * static_cast<double>(b))
+                           .cast<float>();
+                     }),
+          [=](const Vec3& p) {
+            return lattice_coordinates(symmetry, std::atan2(p.y(), p.x()), p.z(),
+                                       Vec3(-p.y(), p.x(), 0).normalized());
+          },
+          a,
+          b,
+          true,
+          false,
+          static_cast<float>(rho)};
+}
+
+/// So slender that cells inside and outside are of nearly one size.
+Parametrized ring(int symmetry) {
+  const std::size_t b = 10;
+  const double major = 4, minor = 0.25;
+  const double rho = 2 * pi * minor / (static_cast<double>(b) * row_height(symmetry));
+  const double cells = std::round(2 * pi * major / rho);
+  return {made::grid(static_cast<std::size_t>(cells) * 4, b * 5, true, true,
+                     [=](double x, double y) -> Vec3 {
+                       const double r = major + minor * std::cos(2 * pi * y);
+                       return Eigen::Vector3d(r * std::cos(2 * pi * x), r * std::sin(2 * pi * x),
+                                              minor * std::sin(2 * pi * y))
+                           .cast<float>();
+                     }),
+          [=](const Vec3& p) {
+            const double angle = std::atan2(p.y(), p.x());
+            const double across = std::atan2(p.z(), std::hypot(p.x(), p.y()) - major);
+            return lattice_coordinates(symmetry, angle / (2 * pi) * cells * rho, across * minor,
+                                       Vec3(-p.y(), p.x(), 0).normalized());
+          },
+          static_cast<std::size_t>(cells),
+          b,
+          true,
+          true,
+          static_cast<float>(rho)};
+}
+
+TEST(Extract, AFieldFromAParametrizationGivesItsGrid) {
+  for (const int symmetry : {4, 6}) {
+    for (const auto& [name, surface] : {std::pair{"plane", plane(symmetry)},
+                                        {"tube", tube(symmetry)},
+                                        {"ring", ring(symmetry)}}) {
+      SCOPED_TRACE(std::string(name) + " " + std::to_string(symmetry));
+      const Graph graph = build_graph(surface.mesh);
+      const auto fields =
+          made::sample_fields(graph, symmetry, surface.edge_length, surface.coordinates);
+      for (const PositionEnergy energy : {PositionEnergy::extrinsic, PositionEnergy::intrinsic}) {
+        ExtractOptions options;
+        options.energy = energy;
+        options.border = border_edges(surface.mesh);
+        const Extraction extraction =
+            extract_mesh(graph, fields.orientation, fields.position, options);
+        const MeshStatistics s = mesh_statistics(extraction.mesh);
+        const std::size_t cells = surface.cells_a * surface.cells_b;
+        EXPECT_EQ(s.faces, symmetry == 4 ? cells : 2 * cells);
+        EXPECT_EQ(symmetry == 4 ? s.quads : s.triangles, s.faces);
+        EXPECT_EQ(s.vertices,
+                  (surface.cells_a + !surface.wrap_a) * (surface.cells_b + !surface.wrap_b));
+        EXPECT_EQ(s.irregular_vertices, 0u);
+        EXPECT_EQ(s.isolated_vertices, 0u);
+        // Vertices are lattice points: neighbours are an edge length apart.
+        EXPECT_NEAR(s.edge_mean, surface.edge_length, 0.03 * surface.edge_length);
+        ASSERT_EQ(extraction.nodes.size(), s.vertices);
+        for (std::size_t v = 0; v < s.vertices; ++v) {
+          EXPECT_LT((graph.positions[extraction.nodes[v]] - extraction.mesh.positions[v]).norm(),
+                    0.5f * surface.edge_length);
+        }
+      }
+    }
+  }
+}
+
+Extraction made_extraction(std::vector<Vec3> positions, std::vector<std::vector<Index>> faces) {
+  Extraction extraction;
+  extraction.mesh.positions = std::move(positions);
+  extraction.nodes.resize(extraction.mesh.positions.size());
+  for (Index v = 0; v < extraction.nodes.size(); ++v) extraction.nodes[v] = v;
+  for (const auto& face : faces) extraction.mesh.faces.push_back(face);
+  return extraction;
+}
+
+TEST(SplitIntoQuads, MakesOneQuadACorner) {
+  Extraction e = made_extraction({{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {3, 1, 0}},
+                                 {{0, 1, 2, 3}, {1, 4, 2}});
+  const double area = surface_area(e.mesh);
+  split_into_quads(e);
+  const MeshStatistics s = mesh_statistics(e.mesh);
+  EXPECT_EQ(s.faces, 7u);
+  EXPECT_EQ(s.quads, 7u);
+  EXPECT_EQ(s.vertices, 5u + 6u + 2u);
+  EXPECT_EQ(s.euler, 1);
+  EXPECT_EQ(s.boundary_loops, 1u);
+  EXPECT_NEAR(surface_area(e.mesh), area, 1e-5);
+  EXPECT_EQ(e.nodes.size(), e.mesh.positions.size());
+}
+
+TEST(TakeDual, MakesHexagonsOfRegularTriangles) {
+  const Parametrized surface = ring(6);
+  const Graph graph = build_graph(surface.mesh);
+  const auto fields = made::sample_fields(graph, 6, surface.edge_length, surface.coordinates);
+  Extraction e = extract_mesh(graph, fields.orientation, fields.position);
+  const std::size_t vertices = e.mesh.positions.size(), faces = e.mesh.faces.size();
+  take_dual(e);
+  EXPECT_EQ(e.mesh.faces.size(), vertices);
+  EXPECT_EQ(e.mesh.positions.size(), faces);
+  EXPECT_EQ(e.mesh.faces.uniform_degree(), 6u);
+  EXPECT_EQ(mesh_statistics(e.mesh).euler, 0);
+  EXPECT_EQ(e.nodes.size(), e.mesh.positions.size());
+}
+
+TEST(TakeDual, LeavesTheBorderOut) {
+  // A wheel of six triangles: one hexagon, whose corners are their centres.
+  std::vector<Vec3> positions{Vec3::Zero()};
+  std::vector<std::vector<Index>> faces;
+  for (Index k = 0; k < 6; ++k) {
+    const float angle = static_cast<float>(k) * 3.14159265f / 3;
+    positions.emplace_back(std::cos(angle), std::sin(angle), 0);
+    faces.push_back({0, k + 1, (k + 1) % 6 + 1});
+  }
+  Extraction e = made_extraction(positions, faces);
+  take_dual(e);
+  ASSERT_EQ(e.mesh.faces.size(), 1u);
+  EXPECT_EQ(e.mesh.faces[0].size(), 6u);
+  EXPECT_EQ(e.mesh.positions.size(), 6u);
+  // Turning the same way as the triangles did.
+  const auto face = e.mesh.faces[0];
+  EXPECT_GT(e.mesh.positions[face[0]].cross(e.mesh.positions[face[1]]).z(), 0);
+}
+
+TEST(MakeManifold, LeavesManifoldMeshesAlone) {
+  Mesh mesh = sample_shape("bracket", 0.3);
+  Extraction e{mesh, std::vector<Index>(mesh.positions.size(), 0)};
+  EXPECT_EQ(make_manifold(e), 0u);
+  EXPECT_EQ(e.mesh.positions, mesh.positions);
+  EXPECT_TRUE(std::ranges::equal(e.mesh.faces.corners(), mesh.faces.corners()));
+}
+
+TEST(MakeManifold, DropsTheThirdFaceOfAnEdge) {
+  Extraction e = made_extraction({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}},
+                                 {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
+  EXPECT_EQ(make_manifold(e), 1u);
+  const MeshStatistics s = mesh_statistics(e.mesh);
+  EXPECT_EQ(s.faces, 2u);
+  EXPECT_EQ(s.vertices, 4u);  // that of the dropped face went with it
+  EXPECT_EQ(s.non_manifold_edges + s.non_manifold_vertices + s.isolated_vertices, 0u);
+}
+
+TEST(MakeManifold, SplitsAVertexBetweenFans) {
+  Extraction e = made_extraction({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}},
+                                 {{0, 1, 2}, {0, 3, 4}});
+  EXPECT_EQ(mesh_statistics(e.mesh).non_manifold_vertices, 1u);
+  EXPECT_EQ(make_manifold(e), 0u);
+  const MeshStatistics s = mesh_statistics(e.mesh);
+  EXPECT_EQ(s.vertices, 6u);
+  EXPECT_EQ(s.non_manifold_vertices, 0u);
+  EXPECT_EQ(s.components, 2u);
+  EXPECT_EQ(e.nodes.size(), 6u);
+}
+
+}  // namespace
+}  // namespace meshgrain
