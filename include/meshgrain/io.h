@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "meshgrain/context.h"
@@ -33,5 +34,11 @@ void write_mesh(const std::filesystem::path& path, const Mesh& mesh);
 /// Throws the error that write_mesh would throw for an unknown extension or a missing or read-only
 /// folder, so that a long computation need not end in one.
 void check_writable(const std::filesystem::path& path);
+
+/// Writes a file of any kind: like write_mesh, whole or not at all.
+void write_file(const std::filesystem::path& path, std::string_view bytes);
+
+/// As check_writable, for any extension.
+void check_place(const std::filesystem::path& path);
 
 }  // namespace meshgrain
