@@ -86,7 +86,6 @@ constexpr const char* commands =
 
 void add_options(CLI::App& app, Arguments& a) {
   RemeshOptions& o = a.remesh;
-  app.set_help_flag("-h,--help", "show this text");
   app.set_version_flag("--version", "meshgrain " + std::string(version()), "show the version");
 
   app.add_option("INPUT", a.input, "mesh or point cloud: OBJ, PLY, OFF, STL, ALN, XYZ or PTS")

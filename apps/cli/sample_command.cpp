@@ -17,8 +17,10 @@ void sample_command(int argc, char** argv) {
   double resolution = 1;
   CLI::App app("Makes a shape to try things on; without a name, lists the names.", "meshgrain sample");
   app.add_option("NAME", name, "the shape");
-  app.add_option("-o,--output", output, "the file to write (NAME.obj); OBJ, PLY, OFF or STL");
-  app.add_option("--resolution", resolution, "vertices along a side, relative to the usual (1)");
+  app.add_option("-o,--output", output, "the file to write (NAME.obj); OBJ, PLY, OFF or STL")
+      ->type_name("FILE");
+  app.add_option("--resolution", resolution, "vertices along a side, relative to the usual (1)")
+      ->type_name("R");
   if (!parse(app, argc, argv)) return;
 
   const auto names = sample_names();
