@@ -1,5 +1,5 @@
-// Every stage by itself: plain values go in and come out, so that a program can look at them, replace
-// them, or run a part again.
+// Every stage by itself: plain values go in and come out, so that a program can look at them,
+// replace them, or run a part again.
 
 #include <meshgrain/meshgrain.h>
 
@@ -53,8 +53,9 @@ int main() {
     write_fields("stages-fields.ply", {surface, orientation, position});
     const Fields again = read_fields("stages-fields.ply", context);
     write_mesh("stages.obj", extraction.mesh);
-    return again.orientation.directions.size() == graph.size() && !extraction.mesh.faces.empty() ? 0
-                                                                                                 : 1;
+    return again.orientation.directions.size() == graph.size() && !extraction.mesh.faces.empty()
+               ? 0
+               : 1;
   } catch (const Error& error) {
     std::cerr << error.what() << '\n';
     return 1;

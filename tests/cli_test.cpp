@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -12,8 +13,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "meshgrain/error.h"
 #include "meshgrain/fields_file.h"
 #include "meshgrain/io.h"
+#include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
 #include "meshgrain/statistics.h"
 #include "meshgrain/surface.h"
@@ -58,10 +61,9 @@ class Cli : public testing::Test {
   Run run(const std::string& arguments) const {
     const fs::path log = folder_.string() + "-log";
     fs::create_directories(log);
-    const std::string command =
-        fmt::format("cd '{}' && '{}' {} >'{}/out' 2>'{}/err'; echo $? >'{}/status'",
-                    folder_.string(), MESHGRAIN_PROGRAM, arguments, log.string(), log.string(),
-                    log.string());
+    const std::string command = fmt::format(
+        "cd '{}' && '{}' {} >'{}/out' 2>'{}/err'; echo $? >'{}/status'", folder_.string(),
+        MESHGRAIN_PROGRAM, arguments, log.string(), log.string(), log.string());
     EXPECT_EQ(std::system(command.c_str()), 0);
     const auto text = [&](const char* name) {
       std::ifstream file(log / name, std::ios::binary);
@@ -111,7 +113,9 @@ class Cli : public testing::Test {
   fs::path folder_;
 };
 
-double near(double value, double target) { return std::abs(value / target - 1); }
+double near(double value, double target) {
+  return std::abs(value / target - 1);
+}
 
 TEST_F(Cli, HelpAndVersion) {
   EXPECT_EQ(run("--version").out, "meshgrain " + std::string(version()) + "\n");
@@ -191,12 +195,15 @@ TEST_F(Cli, ManifoldDropsWhatIsNot) {
     }
   }
   write_mesh(folder_ / "in.obj", book);
-  run("in.obj -o plain.obj -f 300");
-  run("in.obj -o manifold.obj -f 300 --manifold");
-  EXPECT_NE(read("plain.obj"), read("manifold.obj"));
-  const MeshStatistics s = mesh_statistics(read_mesh(folder_ / "manifold.obj"));
-  EXPECT_EQ(s.non_manifold_edges, 0u);
-  EXPECT_EQ(s.non_manifold_vertices, 0u);
+  std::size_t changed = 0;
+  for (const std::string options : {"-f 300", "-f 300 -D", "-f 300 -p 6", "-f 300 -D -i"}) {
+    const std::string plain = bytes(options);
+    if (bytes(options + " --manifold") != plain) ++changed;
+    const MeshStatistics s = mesh_statistics(read_mesh(folder_ / "out.obj"));
+    EXPECT_EQ(s.non_manifold_edges, 0u) << options;
+    EXPECT_EQ(s.non_manifold_vertices, 0u) << options;
+  }
+  EXPECT_GT(changed, 0u);
 }
 
 TEST_F(Cli, SeedAndThreads) {
@@ -244,8 +251,10 @@ TEST_F(Cli, Sizing) {
 
   const Mesh cube = sample_shape("cube", 0.5);
   std::string ply = fmt::format(
-      "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float "
-      "z\nproperty float size\nelement face {}\nproperty list uchar int vertex_indices\nend_header\n",
+      "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty "
+      "float "
+      "z\nproperty float size\nelement face {}\nproperty list uchar int "
+      "vertex_indices\nend_header\n",
       cube.positions.size(), cube.faces.size());
   for (const Vec3& p : cube.positions) {
     ply += fmt::format("{} {} {} {}\n", p.x(), p.y(), p.z(), 1.5 + 2 * p.x());
@@ -259,8 +268,8 @@ TEST_F(Cli, Sizing) {
   EXPECT_GT(mesh_statistics(read_mesh(folder_ / "b.obj")).area_sigma,
             1.5 * mesh_statistics(read_mesh(folder_ / "a.obj")).area_sigma);
   expect_refused("in.ply -o c.obj --sizing value:other", 1, "other");
-  for (const char* wrong : {"big", "distance", "distance:1,2", "distance:1,2,x", "value:", "value",
-                            "curvature:3"}) {
+  for (const char* wrong :
+       {"big", "distance", "distance:1,2", "distance:1,2,x", "value:", "value", "curvature:3"}) {
     expect_refused(std::string("in.ply -o c.obj --sizing ") + wrong, 2, "--sizing");
   }
 }
@@ -385,6 +394,7 @@ TEST_F(Cli, WrongUsageIsRefused) {
   refused("-f many", "--faces");
   refused("-s nan", "--scale");
   refused("-s inf", "--scale");
+  refused("-c nan", "--crease");
   refused("-p 5", "--posy");
   refused("-r 3", "--rosy");
   refused("-r 6", "-p 6");
@@ -427,6 +437,23 @@ TEST_F(Cli, FailuresLeaveNoFile) {
   expect_refused("what.txt -o out.obj", 1, "what.txt");
   write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
   expect_refused("flat.obj -o out.obj", 1, "surface");
+}
+
+TEST(CancelOnInterrupt, CancelsItsContext) {
+  Context context;
+  {
+    const CancelOnInterrupt guard(context);
+    EXPECT_EQ(guard.signal(), 0);
+    EXPECT_NO_THROW(context.check());
+    std::raise(SIGINT);
+    EXPECT_EQ(guard.signal(), SIGINT);
+    EXPECT_THROW(remesh(sample_shape("cube"), {}, context), Cancelled);
+  }
+  context.reset();
+  const CancelOnInterrupt guard(context);
+  EXPECT_EQ(guard.signal(), 0);
+  std::raise(SIGTERM);
+  EXPECT_THROW(context.check(), Cancelled);
 }
 
 TEST_F(Cli, EveryFormatIsWritten) {
@@ -498,15 +525,19 @@ TEST_F(Cli, Picture) {
   run_well("picture in.obj plain.png --size 100");
   const std::string plain = read("plain.png");
   EXPECT_TRUE(plain.starts_with("\x89PNG"));
-  for (const char* option : {"--size 120", "--size 100 80", "--view -1 0 0", "--up 0 0 1",
-                             "--zoom 2", "--no-edges", "--no-dots"}) {
+  for (const char* option :
+       {"--size 120", "--size 100 80", "--view -1 0 0", "--up 0 0 1", "--zoom 2", "--no-edges"}) {
     const bool sized = std::string(option).starts_with("--size");
     run_well(std::string("picture in.obj other.png ") + option + (sized ? "" : " --size 100"));
     EXPECT_NE(read("other.png"), plain) << option;
   }
+  sample("cube", "cube.obj", 0.2);
+  run_well("picture cube.obj plain.png --size 400");
+  run_well("picture cube.obj other.png --size 400 --no-dots");
+  EXPECT_NE(read("other.png"), read("plain.png"));
   expect_refused("picture in.obj", 2, "FILE.png");
   expect_refused("picture missing.obj out.png", 1, "missing.obj");
-  expect_refused("picture in.obj out.png --size 0", 1, "size");
+  expect_refused("picture in.obj out.png --size 0", 1, "pixels");
 }
 
 }  // namespace

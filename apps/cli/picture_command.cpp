@@ -26,8 +26,7 @@ void picture_command(int argc, char** argv) {
       ->type_name("PIXELS");
   app.add_option("--view", view, "from where to look (1 0.6 1.4)")->expected(3)->type_name("X Y Z");
   app.add_option("--up", up, "what is up (0 1 0)")->expected(3)->type_name("X Y Z");
-  app.add_option("--zoom", options.zoom, "1 shows all of it, 2 the middle half")
-      ->type_name("Z");
+  app.add_option("--zoom", options.zoom, "1 shows all of it, 2 the middle half")->type_name("Z");
   app.add_flag("--no-edges", no_edges, "the surface alone");
   app.add_flag("--no-dots", no_dots, "do not mark what is irregular");
   if (!parse(app, argc, argv)) return;

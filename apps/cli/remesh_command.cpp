@@ -41,9 +41,8 @@ struct Arguments {
 template <class T>
 using Names = std::map<std::string, T>;
 
-const Names<Schedule> schedules = {{"blocks", Schedule::blocks},
-                                   {"random", Schedule::random_order},
-                                   {"jacobi", Schedule::jacobi}};
+const Names<Schedule> schedules = {
+    {"blocks", Schedule::blocks}, {"random", Schedule::random_order}, {"jacobi", Schedule::jacobi}};
 const Names<OrientationEnergy> orientation_energies = {{"extrinsic", OrientationEnergy::extrinsic},
                                                        {"intrinsic", OrientationEnergy::intrinsic},
                                                        {"convex", OrientationEnergy::convex}};
@@ -70,8 +69,16 @@ CLI::Option* add_choice(CLI::App& app, const std::string& option, T& value, cons
   return app.add_option_function<std::string>(option, set, text)->type_name(type_name);
 }
 
+/// Refuses "nan" and "inf", which CLI11's ranges let through.
+std::string refuse_unless_finite(const std::string& text) {
+  double number = 0;
+  const bool finite = CLI::detail::lexical_cast(text, number) && std::isfinite(number);
+  return finite ? "" : "\"" + text + "\" is not a number";
+}
+
 constexpr const char* description =
-    "Meshgrain turns a mesh or point cloud into a mesh of well-shaped quads, triangles or hexagons\n"
+    "Meshgrain turns a mesh or point cloud into a mesh of well-shaped quads, triangles or "
+    "hexagons\n"
     "that follow its shape.";
 
 constexpr const char* commands =
@@ -81,7 +88,8 @@ constexpr const char* commands =
     "  meshgrain sample [NAME]         make a shape to try things on\n"
     "A file with the name of a command is meant by ./stats, for example.\n"
     "\n"
-    "-f, -v and -s always mean the mesh that is written. (Instant Meshes, whose options these are,\n"
+    "-f, -v and -s always mean the mesh that is written. (Instant Meshes, whose options these "
+    "are,\n"
     "writes four times as many faces and vertices as its pure quads are asked for.)";
 
 void add_options(CLI::App& app, Arguments& a) {
@@ -104,6 +112,7 @@ void add_options(CLI::App& app, Arguments& a) {
       ->type_name("N")
       ->group(app.get_option("-f")->get_group());
   app.add_option("-s,--scale", o.edge_length, "edges so long, in the mesh that is written")
+      ->check(refuse_unless_finite)
       ->check(CLI::PositiveNumber)
       ->type_name("LENGTH")
       ->group(app.get_option("-f")->get_group());
@@ -116,11 +125,15 @@ void add_options(CLI::App& app, Arguments& a) {
                        "(near a point) or value:NAME (by a number of the input's PLY vertices)")
             ->type_name("HOW"));
   sizes(app.add_option("--sizing-ratio", o.sizing.ratio, "largest to smallest edge length (4)")
+            ->check(refuse_unless_finite)
             ->check(CLI::Range(1.0, 1000.0))
             ->type_name("R"));
 
-  const auto faces = [&](CLI::Option* option) { option->group("Which faces (default: only quads)"); };
-  faces(app.add_flag("-D,--dominant", a.dominant, "mostly quads, with some triangles and pentagons"));
+  const auto faces = [&](CLI::Option* option) {
+    option->group("Which faces (default: only quads)");
+  };
+  faces(
+      app.add_flag("-D,--dominant", a.dominant, "mostly quads, with some triangles and pentagons"));
   faces(app.add_option("-p,--posy", a.posy, "position symmetry: 4 (quads) or 6 (triangles)")
             ->check(CLI::IsMember({4, 6}))
             ->type_name("N"));
@@ -134,17 +147,21 @@ void add_options(CLI::App& app, Arguments& a) {
   const auto follow = [&](CLI::Option* option) { option->group("What to follow"); };
   follow(app.add_option("-c,--crease", o.graph.crease_degrees,
                         "edges with a larger angle between their faces are creases (off)")
+             ->check(refuse_unless_finite)
              ->check(CLI::Range(0.0, 180.0))
              ->type_name("DEGREES"));
   follow(app.add_flag("-b,--boundaries", o.align_border, "follow the border of an open mesh"));
   follow(app.add_option("--curvature", o.curvature.strength,
                         "pull towards the directions of curvature: 0 (off) to 1")
+             ->check(refuse_unless_finite)
              ->check(CLI::Range(0.0, 1.0))
              ->type_name("STRENGTH"));
-  follow(app.add_option("--curvature-hard", o.curvature.hard_degrees,
-                        "follow them exactly where the surface bends more over an edge's length (off)")
-             ->check(CLI::Range(0.0, 180.0))
-             ->type_name("DEGREES"));
+  follow(
+      app.add_option("--curvature-hard", o.curvature.hard_degrees,
+                     "follow them exactly where the surface bends more over an edge's length (off)")
+          ->check(refuse_unless_finite)
+          ->check(CLI::Range(0.0, 180.0))
+          ->type_name("DEGREES"));
 
   const auto method = [&](CLI::Option* option) { option->group("Method"); };
   method(app.add_flag_callback(
@@ -177,17 +194,20 @@ void add_options(CLI::App& app, Arguments& a) {
   method(app.add_flag("--weld", a.read.weld, "merge vertices at the same place first"));
 
   const auto files = [&](CLI::Option* option) { option->group("Files and running"); };
-  files(app.add_option("--fields", a.fields, "use the fields in this file instead of solving for them")
+  files(app.add_option("--fields", a.fields,
+                       "use the fields in this file instead of solving for them")
             ->type_name("FILE"));
   files(app.add_option("--fields-out", a.fields_out, "write the fields to this file (PLY)")
             ->type_name("FILE"));
-  files(app.add_option("--report", a.report, "write times, counts, memory and energies to this file")
-            ->type_name("FILE.json"));
+  files(
+      app.add_option("--report", a.report, "write times, counts, memory and energies to this file")
+          ->type_name("FILE.json"));
   files(app.add_option("-t,--threads", a.threads, "threads to use (all cores)")
             ->check(CLI::Range(1, 4096))
             ->type_name("N"));
   files(app.add_flag("--quiet", a.quiet, "print nothing but errors"));
-  files(app.add_flag("-d,--deterministic", a.ignored, "always so; accepted for Instant Meshes' scripts"));
+  files(app.add_flag("-d,--deterministic", a.ignored,
+                     "always so; accepted for Instant Meshes' scripts"));
   files(app.add_flag("-C,--compat", a.ignored, "no effect; accepted for Instant Meshes' scripts"));
   app.footer(commands);
 }
@@ -277,9 +297,9 @@ void check_fields(const Arguments& a, const Fields& fields) {
   }
   const int posy = a.hexagons ? 6 : a.posy;
   if (!fields.position.points.empty() && fields.position.posy != posy) {
-    throw UsageError(fmt::format("{} holds positions for {}", name,
-                                 fields.position.posy == 6 ? "triangles: add -p 6"
-                                                           : "quads: leave out -p and --hexagons"));
+    throw UsageError(fmt::format(
+        "{} holds positions for {}", name,
+        fields.position.posy == 6 ? "triangles: add -p 6" : "quads: leave out -p and --hexagons"));
   }
 }
 
@@ -299,18 +319,19 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-Json stage(const char* name, double seconds) { return {{"name", name}, {"seconds", seconds}}; }
+Json stage(const char* name, double seconds) {
+  return {{"name", name}, {"seconds", seconds}};
+}
 
 void write_report(const Arguments& a, const RemeshReport& report, const MeshStatistics& statistics,
                   int threads, double read_seconds, double write_seconds, double seconds) {
-  Json json = {{"version", version()},
-               {"input",
-                {{"file", a.input},
-                 {"vertices", report.input_vertices},
-                 {"faces", report.input_faces}}},
-               {"options", to_json(a.remesh)},
-               {"threads", threads},
-               {"seconds", seconds}};
+  Json json = {
+      {"version", version()},
+      {"input",
+       {{"file", a.input}, {"vertices", report.input_vertices}, {"faces", report.input_faces}}},
+      {"options", to_json(a.remesh)},
+      {"threads", threads},
+      {"seconds", seconds}};
   json.update(to_json(report));
   Json& stages = json["stages"];
   stages.insert(stages.begin(), stage("read", read_seconds));
@@ -341,7 +362,8 @@ void run(Arguments& a, Context& context) {
   const double read_seconds = seconds_since(start);
   RemeshResult result = remesh(std::move(input), a.remesh, context);
   if (a.target_given && !fields.position.points.empty()) {
-    result.report.notes.push_back("the given positions decide how fine the mesh is, not -f, -v or -s");
+    result.report.notes.push_back(
+        "the given positions decide how fine the mesh is, not -f, -v or -s");
   }
 
   context.progress("write", 0);

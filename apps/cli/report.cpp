@@ -73,30 +73,31 @@ Json to_json(const RemeshOptions& o) {
   constexpr const char* schedules[] = {"blocks", "random", "jacobi"};
   constexpr const char* energies[] = {"extrinsic", "intrinsic", "convex"};
   const bool triangular = o.faces == OutputFaces::triangles || o.faces == OutputFaces::hexagons;
-  Json json = {
-      {"result", name(o.faces)},
-      {"rosy", o.rosy != 0 ? o.rosy : triangular ? 6 : 4},
-      {"posy", triangular ? 6 : 4},
-      {"scale", o.edge_length},
-      {"faces", o.face_count},
-      {"vertices", o.vertex_count},
-      {"sizing", sizings[static_cast<int>(o.sizing.kind)]},
-      {"sizing_ratio", o.sizing.ratio},
-      {"graph", o.graph.nodes == GraphNodes::faces ? "faces" : "vertices"},
-      {"weights", o.graph.weights == GraphWeights::geometric ? "geometric" : "uniform"},
-      {"knn", o.graph.neighbors},
-      {"crease", o.graph.crease_degrees},
-      {"orientation_energy", energies[static_cast<int>(o.orientation_energy)]},
-      {"position_energy", energies[static_cast<int>(o.position_energy)]},
-      {"solver", schedules[static_cast<int>(o.solver.schedule)]},
-      {"sweeps", o.solver.sweeps},
-      {"multiresolution", o.solver.multiresolution},
-      {"seed", o.solver.seed},
-      {"boundaries", o.align_border},
-      {"curvature", o.curvature.strength},
-      {"curvature_hard", o.curvature.hard_degrees},
-      {"smooth", o.smoothing},
-      {"manifold", o.manifold}};
+  Json json = {{"result", name(o.faces)},
+               {"rosy", o.rosy != 0  ? o.rosy
+                        : triangular ? 6
+                                     : 4},
+               {"posy", triangular ? 6 : 4},
+               {"scale", o.edge_length},
+               {"faces", o.face_count},
+               {"vertices", o.vertex_count},
+               {"sizing", sizings[static_cast<int>(o.sizing.kind)]},
+               {"sizing_ratio", o.sizing.ratio},
+               {"graph", o.graph.nodes == GraphNodes::faces ? "faces" : "vertices"},
+               {"weights", o.graph.weights == GraphWeights::geometric ? "geometric" : "uniform"},
+               {"knn", o.graph.neighbors},
+               {"crease", o.graph.crease_degrees},
+               {"orientation_energy", energies[static_cast<int>(o.orientation_energy)]},
+               {"position_energy", energies[static_cast<int>(o.position_energy)]},
+               {"solver", schedules[static_cast<int>(o.solver.schedule)]},
+               {"sweeps", o.solver.sweeps},
+               {"multiresolution", o.solver.multiresolution},
+               {"seed", o.solver.seed},
+               {"boundaries", o.align_border},
+               {"curvature", o.curvature.strength},
+               {"curvature_hard", o.curvature.hard_degrees},
+               {"smooth", o.smoothing},
+               {"manifold", o.manifold}};
   if (o.sizing.kind == Sizing::Kind::distance) {
     const auto& p = o.sizing.point;
     json["sizing_point"] = {p.x(), p.y(), p.z()};

@@ -15,7 +15,8 @@ namespace meshgrain::cli {
 void sample_command(int argc, char** argv) {
   std::string name, output;
   double resolution = 1;
-  CLI::App app("Makes a shape to try things on; without a name, lists the names.", "meshgrain sample");
+  CLI::App app("Makes a shape to try things on; without a name, lists the names.",
+               "meshgrain sample");
   app.add_option("NAME", name, "the shape");
   app.add_option("-o,--output", output, "the file to write (NAME.obj); OBJ, PLY, OFF or STL")
       ->type_name("FILE");

@@ -29,7 +29,8 @@ void line(std::string_view name, const std::string& value, const std::string& re
 
 void row(std::string_view name, const char* format, std::initializer_list<double> numbers) {
   fmt::print("  {:<14}", name);
-  for (const double number : numbers) fmt::print("{:>10}", fmt::format(fmt::runtime(format), number));
+  for (const double number : numbers)
+    fmt::print("{:>10}", fmt::format(fmt::runtime(format), number));
   fmt::print("\n");
 }
 
@@ -52,9 +53,7 @@ void print(const std::string& name, const MeshStatistics& s,
   line("faces", with_commas(s.faces), kinds(s));
   line("irregular vertices", with_commas(s.irregular_vertices));
   line("singularities", with_commas(s.singularities),
-       of_orientation
-           ? fmt::format("orientation field: {}", with_commas(*of_orientation))
-           : "");
+       of_orientation ? fmt::format("orientation field: {}", with_commas(*of_orientation)) : "");
   // Headings count as many columns as they have letters, but the Greek one has two bytes.
   fmt::print("\n  {:<14}{:>11}{:>10}{:>10}{:>12}{:>12}\n", "", "\u03c3", "least", "most",
              "mean least", "mean most");
@@ -72,8 +71,8 @@ void print(const std::string& name, const MeshStatistics& s,
   line("isolated vertices", with_commas(s.isolated_vertices));
   line("inverted quads", with_commas(s.inverted_quads));
   if (!comparison) return;
-  fmt::print("\n  {:<24}{:>10}{:>10}   of the input's diagonal, {:.6g}\n", "distance", "mean", "most",
-             comparison->diagonal);
+  fmt::print("\n  {:<24}{:>10}{:>10}   of the input's diagonal, {:.6g}\n", "distance", "mean",
+             "most", comparison->diagonal);
   const auto distance = [](const char* title, const SurfaceDistance& d) {
     fmt::print("  {:<24}{:>10.2e}{:>10.2e}\n", title, d.mean, d.max);
   };
@@ -87,7 +86,8 @@ void stats_command(int argc, char** argv) {
   std::string path, against, fields_path;
   bool as_json = false;
   CLI::App app(
-      "Prints the figures of a mesh. Areas are relative to the mean area; singularities are irregular\n"
+      "Prints the figures of a mesh. Areas are relative to the mean area; singularities are "
+      "irregular\n"
       "vertices and faces other than the prevailing kind.",
       "meshgrain stats");
   app.add_option("MESH", path, "the mesh")->required();
@@ -109,7 +109,8 @@ void stats_command(int argc, char** argv) {
     if (!fields_path.empty()) {
       const Fields fields = read_fields(fields_path, context);
       if (fields.surface.is_point_cloud()) {
-        throw Error(file_name(fields_path) + ": has no faces; only fields on meshes have singularities");
+        throw Error(file_name(fields_path) +
+                    ": has no faces; only fields on meshes have singularities");
       }
       of_orientation = orientation_singularities(fields.surface, fields.surface.normals,
                                                  fields.orientation, context)

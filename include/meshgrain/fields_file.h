@@ -7,18 +7,18 @@
 
 namespace meshgrain {
 
-/// Writes fields with their surface as a binary PLY file that other programs can open: at each vertex
-/// the position x y z, the normal nx ny nz, the orientation ox oy oz and, if there are positions, the
-/// lattice point px py pz and, if edge lengths differ, the `length`; the surface's faces; and comments
-/// in the header:
+/// Writes fields with their surface as a binary PLY file that other programs can open: at each
+/// vertex the position x y z, the normal nx ny nz, the orientation ox oy oz and, if there are
+/// positions, the lattice point px py pz and, if edge lengths differ, the `length`; the surface's
+/// faces; and comments in the header:
 ///
 ///     comment meshgrain fields 1
 ///     comment rosy 4
 ///     comment posy 4
 ///     comment edge_length 0.0123
 ///
-/// The file appears whole or not at all. Throws Error if the fields do not have one value a vertex, or
-/// if the place cannot be written.
+/// The file appears whole or not at all. Throws Error if the fields do not have one value a vertex,
+/// or if the place cannot be written.
 void write_fields(const std::filesystem::path& path, const Fields& fields);
 
 /// Reads what write_fields wrote or another program did: properties in any order and of any type,

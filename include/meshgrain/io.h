@@ -21,8 +21,8 @@ struct ReadOptions {
 /// Reads OBJ, PLY (ASCII and both byte orders; `tristrips` and `range_grid` too), OFF (text and
 /// binary), STL (both kinds), ALN, XYZ or PTS; the kind is told by the content where that is
 /// possible, else by the name's extension. A file with vertices but no faces is a point cloud.
-/// Throws Error, naming the file and the line or byte, if the file is missing, of an unknown kind or
-/// cut off, or if an index is out of range or a number is not finite.
+/// Throws Error, naming the file and the line or byte, if the file is missing, of an unknown kind
+/// or cut off, or if an index is out of range or a number is not finite.
 Mesh read_mesh(const std::filesystem::path& path, const ReadOptions& options = {},
                const Context& context = Context());
 

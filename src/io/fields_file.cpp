@@ -28,7 +28,8 @@ constexpr std::string_view signature = "meshgrain fields";
 std::optional<double> number_in(const std::vector<std::string>& comments, std::string_view name,
                                 const io::Input& input) {
   for (const std::string& comment : comments) {
-    if (!comment.starts_with(name) || comment.size() <= name.size() || comment[name.size()] != ' ') {
+    if (!comment.starts_with(name) || comment.size() <= name.size() ||
+        comment[name.size()] != ' ') {
       continue;
     }
     const std::size_t at = comment.find_first_not_of(' ', name.size());
@@ -119,7 +120,8 @@ Fields read_fields(const std::filesystem::path& path, const Context& context) {
   fields.surface = io::ply::read(input, columns, &comments);
   Mesh& surface = fields.surface;
   if (const auto version = number_in(comments, signature, input); version && *version != 1) {
-    input.fail(fmt::format("is of version {} of the format; this program knows version 1", *version));
+    input.fail(
+        fmt::format("is of version {} of the format; this program knows version 1", *version));
   }
 
   fields.orientation.rosy = symmetry_in(comments, "rosy", {1, 2, 4, 6}, input);

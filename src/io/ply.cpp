@@ -2,6 +2,8 @@
 // elements and properties. Understood are the elements `vertex`, `face`, `tristrips` and
 // `range_grid`; others are skipped.
 
+#include "io/ply.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +19,6 @@
 
 #include "io/coordinates.h"
 #include "io/formats.h"
-#include "io/ply.h"
 #include "io/ply_header.h"
 #include "io/range_grid.h"
 #include "io/text.h"
@@ -124,8 +125,8 @@ template <class Body>
 class Reader {
  public:
   /// `columns` get the numbers of the vertices under their names.
-  Reader(const Input& input, const Text& text, const Header& header,
-         std::span<ply::Column> columns, Body body)
+  Reader(const Input& input, const Text& text, const Header& header, std::span<ply::Column> columns,
+         Body body)
       : input_(input), text_(text), header_(header), columns_(columns), body_(body) {}
 
   Mesh read() {
@@ -420,7 +421,9 @@ Mesh read_ply(const Input& input) {
   return mesh;
 }
 
-void write_ply(Output& output, const Mesh& mesh) { ply::write(output, mesh, {}, {}); }
+void write_ply(Output& output, const Mesh& mesh) {
+  ply::write(output, mesh, {}, {});
+}
 
 namespace ply {
 
@@ -432,8 +435,7 @@ Mesh read(const Input& input, std::span<Column> columns, std::vector<std::string
     case Encoding::text:
       return Reader(input, text, header, columns, TextBody(input, text)).read();
     case Encoding::little_endian:
-      return Reader(input, text, header, columns,
-                    BinaryBody<std::endian::little>(input, text.at()))
+      return Reader(input, text, header, columns, BinaryBody<std::endian::little>(input, text.at()))
           .read();
     case Encoding::big_endian:
       break;

@@ -15,7 +15,7 @@ namespace meshgrain::io::ply {
 /// A number of every vertex that is to be read.
 struct Column {
   std::string name;
-  bool required = false;        // reading fails without it
+  bool required = false;  // reading fails without it
   bool found = false;
   std::vector<double> numbers;  // one a vertex if found; finite in single precision
 };

@@ -19,12 +19,22 @@ void interrupt(int signal) {
 
 }  // namespace
 
-std::string_view version() { return MESHGRAIN_VERSION; }
+std::string_view version() {
+  return MESHGRAIN_VERSION;
+}
 
-std::size_t peak_memory() { return platform::peak_memory(); }
-bool stdout_is_terminal() { return platform::stdout_is_terminal(); }
-bool stderr_is_terminal() { return platform::stderr_is_terminal(); }
-int terminal_width() { return platform::terminal_width(); }
+std::size_t peak_memory() {
+  return platform::peak_memory();
+}
+bool stdout_is_terminal() {
+  return platform::stdout_is_terminal();
+}
+bool stderr_is_terminal() {
+  return platform::stderr_is_terminal();
+}
+int terminal_width() {
+  return platform::terminal_width();
+}
 
 CancelOnInterrupt::CancelOnInterrupt(Context& context) {
   interrupted_context.store(&context);
@@ -37,6 +47,8 @@ CancelOnInterrupt::~CancelOnInterrupt() {
   interrupted_context.store(nullptr);
 }
 
-int CancelOnInterrupt::signal() const { return interrupting_signal.load(); }
+int CancelOnInterrupt::signal() const {
+  return interrupting_signal.load();
+}
 
 }  // namespace meshgrain
