@@ -196,7 +196,7 @@ TEST_F(Cli, ManifoldDropsWhatIsNot) {
   }
   write_mesh(folder_ / "in.obj", book);
   std::size_t changed = 0;
-  for (const std::string options : {"-f 300", "-f 300 -D", "-f 300 -p 6", "-f 300 -D -i"}) {
+  for (const std::string options : {"-f 300 --quiet", "-f 300 -D --quiet", "-f 300 -p 6 --quiet"}) {
     const std::string plain = bytes(options);
     if (bytes(options + " --manifold") != plain) ++changed;
     const MeshStatistics s = mesh_statistics(read_mesh(folder_ / "out.obj"));
