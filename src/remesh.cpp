@@ -301,6 +301,10 @@ RemeshResult remesh(Mesh input, const RemeshOptions& options, const Context& con
     smooth(extraction, surface, graph, smoothing, context);
   });
 
+  if (options.graph.nodes == GraphNodes::faces && !cloud) {  // the nodes are a cloud of their own
+    surface = Mesh();
+    surface.positions = graph.positions;
+  }
   fields.surface = std::move(surface);
   fields.surface.normals = graph.normals;
   leave(frame, fields);

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "meshgrain/context.h"
@@ -20,8 +21,8 @@ struct ReadOptions {
 /// Reads OBJ, PLY (ASCII and both byte orders; `tristrips` and `range_grid` too), OFF (text and
 /// binary), STL (both kinds), ALN, XYZ or PTS; the kind is told by the content where that is
 /// possible, else by the name's extension. A file with vertices but no faces is a point cloud.
-/// Throws Error, naming the file and the line or byte, if the file is missing, of an unknown kind or
-/// cut off, or if an index is out of range or a number is not finite.
+/// Throws Error, naming the file and the line or byte, if the file is missing, of an unknown kind
+/// or cut off, or if an index is out of range or a number is not finite.
 Mesh read_mesh(const std::filesystem::path& path, const ReadOptions& options = {},
                const Context& context = Context());
 
@@ -33,5 +34,11 @@ void write_mesh(const std::filesystem::path& path, const Mesh& mesh);
 /// Throws the error that write_mesh would throw for an unknown extension or a missing or read-only
 /// folder, so that a long computation need not end in one.
 void check_writable(const std::filesystem::path& path);
+
+/// Writes a file of any kind: like write_mesh, whole or not at all.
+void write_file(const std::filesystem::path& path, std::string_view bytes);
+
+/// As check_writable, for any extension.
+void check_place(const std::filesystem::path& path);
 
 }  // namespace meshgrain

@@ -9,6 +9,7 @@
 #include "meshgrain/error.h"
 #include "meshgrain/extract.h"
 #include "meshgrain/fields.h"
+#include "meshgrain/fields_file.h"
 #include "meshgrain/finish.h"
 #include "meshgrain/graph.h"
 #include "meshgrain/hierarchy.h"
@@ -22,4 +23,5 @@
 #include "meshgrain/sizing.h"
 #include "meshgrain/statistics.h"
 #include "meshgrain/surface.h"
+#include "meshgrain/system.h"
 #include "meshgrain/triangulate.h"

@@ -106,6 +106,16 @@ void write_mesh(const std::filesystem::path& path, const Mesh& mesh) {
 
 void check_writable(const std::filesystem::path& path) {
   format_to_write(path);
+  check_place(path);
+}
+
+void write_file(const std::filesystem::path& path, std::string_view bytes) {
+  io::Output output(path);
+  output.write(bytes);
+  output.commit();
+}
+
+void check_place(const std::filesystem::path& path) {
   const io::Output probe(path);  // creates a temporary file and removes it again
 }
 

@@ -2,6 +2,8 @@
 // elements and properties. Understood are the elements `vertex`, `face`, `tristrips` and
 // `range_grid`; others are skipped.
 
+#include "io/ply.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +12,8 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <span>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -120,8 +124,10 @@ class BinaryBody {
 template <class Body>
 class Reader {
  public:
-  Reader(const Input& input, const Text& text, const Header& header, Body body)
-      : input_(input), text_(text), header_(header), body_(body) {}
+  /// `columns` get the numbers of the vertices under their names.
+  Reader(const Input& input, const Text& text, const Header& header, std::span<ply::Column> columns,
+         Body body)
+      : input_(input), text_(text), header_(header), columns_(columns), body_(body) {}
 
   Mesh read() {
     const Element* const vertices = header_.find("vertex");
@@ -194,18 +200,27 @@ class Reader {
     // Each property goes to the place of its name; the last place takes what nobody wants.
     constexpr std::string_view names[] = {"x", "y", "z", "nx", "ny", "nz"};
     constexpr std::size_t unwanted = std::size(names);
-    const std::string& value_name = input_.options().value_name;
+    constexpr std::size_t no_column = ~std::size_t{0};
     std::vector<std::size_t> places;
+    std::vector<std::size_t> column_of;  // each property's column, or no_column
     std::array<int, unwanted + 1> found{};
-    std::size_t value_property = no_index;
     for (const Property& property : element.properties) {
       std::size_t place = unwanted;
+      std::size_t column = no_column;
       if (!property.count_type) {
         place = static_cast<std::size_t>(
             std::find(std::begin(names), std::end(names), property.name) - std::begin(names));
-        if (property.name == value_name) value_property = places.size();
+        for (std::size_t c = 0; c < columns_.size(); ++c) {
+          if (columns_[c].name != property.name) continue;
+          if (columns_[c].found) {
+            text_.fail(element.at, "element vertex has two numbers " + in_quotes(property.name));
+          }
+          columns_[c].found = true;
+          column = c;
+        }
       }
       places.push_back(place);
+      column_of.push_back(column);
       ++found[place];
     }
     for (std::size_t place = 0; place < 3; ++place) {
@@ -215,23 +230,25 @@ class Reader {
       }
     }
     const bool normals = found[3] == 1 && found[4] == 1 && found[5] == 1;
-    const bool values = value_property != no_index;
-    if (!value_name.empty() && !values) {
-      text_.fail(element.at, "element vertex has no number " + in_quotes(value_name));
+    for (const ply::Column& column : columns_) {
+      if (column.required && !column.found) {
+        text_.fail(element.at, "element vertex has no number " + in_quotes(column.name));
+      }
     }
 
     const std::size_t expected = plausible_rows(element);
     coordinates_.reserve(expected);
     if (normals) mesh_.normals.reserve(expected);
-    if (values) mesh_.values.reserve(expected);
+    for (ply::Column& column : columns_) {
+      if (column.found) column.numbers.reserve(expected);
+    }
     std::array<double, unwanted> row{};
     for (std::uint64_t v = 0; v < element.count; ++v) {
       tick(v);
       const Item item{"vertex", v, element.count};
       for (std::size_t p = 0; p < places.size(); ++p) {
         const Property& property = element.properties[p];
-        const bool is_value = p == value_property;
-        if (places[p] == unwanted && !is_value) {
+        if (places[p] == unwanted && column_of[p] == no_column) {
           skip(property, item);
           continue;
         }
@@ -242,7 +259,7 @@ class Reader {
                                          in_quotes(property.name), item.text()));
         }
         if (places[p] != unwanted) row[places[p]] = number;
-        if (is_value) mesh_.values.push_back(static_cast<float>(number));
+        if (column_of[p] != no_column) columns_[column_of[p]].numbers.push_back(number);
       }
       coordinates_.push(row[0], row[1], row[2]);
       if (normals) mesh_.normals.emplace_back(Eigen::Vector3d(&row[3]).cast<float>());
@@ -381,6 +398,7 @@ class Reader {
   const Input& input_;
   const Text& text_;  // for places in the header
   const Header& header_;
+  std::span<ply::Column> columns_;
   Body body_;
   std::uint64_t vertices_ = 0;  // as the header says
   Mesh mesh_;
@@ -395,20 +413,39 @@ bool is_ply(std::string_view bytes) {
 }
 
 Mesh read_ply(const Input& input) {
-  Text text(input);
-  const Header header = ply::read_header(text);
-  switch (header.encoding) {
-    case Encoding::text:
-      return Reader(input, text, header, TextBody(input, text)).read();
-    case Encoding::little_endian:
-      return Reader(input, text, header, BinaryBody<std::endian::little>(input, text.at())).read();
-    case Encoding::big_endian:
-      break;
-  }
-  return Reader(input, text, header, BinaryBody<std::endian::big>(input, text.at())).read();
+  const std::string& value_name = input.options().value_name;
+  if (value_name.empty()) return ply::read(input, {});
+  ply::Column values{value_name, true, false, {}};
+  Mesh mesh = ply::read(input, {&values, 1});
+  mesh.values.assign(values.numbers.begin(), values.numbers.end());
+  return mesh;
 }
 
 void write_ply(Output& output, const Mesh& mesh) {
+  ply::write(output, mesh, {}, {});
+}
+
+namespace ply {
+
+Mesh read(const Input& input, std::span<Column> columns, std::vector<std::string>* comments) {
+  Text text(input);
+  const Header header = read_header(text);
+  if (comments) comments->assign(header.comments.begin(), header.comments.end());
+  switch (header.encoding) {
+    case Encoding::text:
+      return Reader(input, text, header, columns, TextBody(input, text)).read();
+    case Encoding::little_endian:
+      return Reader(input, text, header, columns, BinaryBody<std::endian::little>(input, text.at()))
+          .read();
+    case Encoding::big_endian:
+      break;
+  }
+  return Reader(input, text, header, columns, BinaryBody<std::endian::big>(input, text.at()))
+      .read();
+}
+
+void write(Output& output, const Mesh& mesh, std::span<const std::string> comments,
+           std::span<const Attribute> attributes) {
   const bool shifted = !mesh.origin.isZero(0);
   const bool normals = !mesh.normals.empty();
   std::size_t highest_degree = mesh.faces.uniform_degree();
@@ -419,11 +456,15 @@ void write_ply(Output& output, const Mesh& mesh) {
   const bool large = mesh.positions.size() > std::numeric_limits<std::int32_t>::max();
 
   output.print("ply\nformat binary_little_endian 1.0\ncomment written by Meshgrain\n");
+  for (const std::string& comment : comments) output.print("comment {}\n", comment);
   output.print("element vertex {}\n", mesh.positions.size());
   for (const char* name : {"x", "y", "z"}) {
     output.print("property {} {}\n", shifted ? "double" : "float", name);
   }
   if (normals) output.write("property float nx\nproperty float ny\nproperty float nz\n");
+  for (const Attribute& attribute : attributes) {
+    output.print("property {} {}\n", attribute.offset != 0 ? "double" : "float", attribute.name);
+  }
   if (!mesh.is_point_cloud()) {
     output.print("element face {}\nproperty list {} {} vertex_indices\n", mesh.faces.size(),
                  long_lists ? "uint" : "uchar", large ? "uint" : "int");
@@ -442,6 +483,14 @@ void write_ply(Output& output, const Mesh& mesh) {
     if (normals) {
       for (const float n : mesh.normals[v]) output.put(n);
     }
+    for (const Attribute& attribute : attributes) {
+      const float number = attribute.first[v * attribute.stride];
+      if (attribute.offset != 0) {
+        output.put(static_cast<double>(number) + attribute.offset);
+      } else {
+        output.put(number);
+      }
+    }
   }
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     const std::span<const Index> face = mesh.faces[f];
@@ -454,4 +503,5 @@ void write_ply(Output& output, const Mesh& mesh) {
   }
 }
 
+}  // namespace ply
 }  // namespace meshgrain::io

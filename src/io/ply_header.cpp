@@ -79,7 +79,9 @@ Header read_header(Text& text) {
       header.elements.back().properties.push_back({read_name(text), type, count_type});
     } else if (word == "end_header") {
       break;
-    } else if (word != "comment") {
+    } else if (word == "comment") {
+      header.comments.push_back(text.rest_of_line());
+    } else {
       text.fail(at, "unknown header line " + in_quotes(word));
     }
   }

@@ -38,6 +38,7 @@ enum class Encoding { text, little_endian, big_endian };
 struct Header {
   Encoding encoding = Encoding::text;
   std::vector<Element> elements;
+  std::vector<std::string_view> comments;
   std::uint64_t columns = 0, rows = 0;  // of a range_grid
 
   /// Null if there is none of that name.

@@ -1,18 +1,27 @@
 #include "meshgrain/context.h"
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "meshgrain/error.h"
 
 namespace meshgrain {
 
 struct Context::Arena {
-  explicit Arena(int threads) : arena(threads) {}
+  explicit Arena(int threads) : arena(threads) {
+    // More threads than cores are used only where oneTBB is told; it warns on stderr else.
+    if (threads > tbb::info::default_concurrency()) {
+      more_threads.emplace(tbb::global_control::max_allowed_parallelism,
+                           static_cast<std::size_t>(threads));
+    }
+  }
+  std::optional<tbb::global_control> more_threads;
   tbb::task_arena arena;
 };
 
@@ -41,12 +50,13 @@ void Context::for_ranges(std::size_t count, std::size_t grain,
     return;
   }
   arena_->arena.execute([&] {
-    tbb::parallel_for(std::size_t{0}, ranges, [&](std::size_t r) {
-      body(r * grain, std::min(count, (r + 1) * grain));
-    });
+    tbb::parallel_for(std::size_t{0}, ranges,
+                      [&](std::size_t r) { body(r * grain, std::min(count, (r + 1) * grain)); });
   });
 }
 
-void Context::run(const std::function<void()>& body) const { arena_->arena.execute(body); }
+void Context::run(const std::function<void()>& body) const {
+  arena_->arena.execute(body);
+}
 
 }  // namespace meshgrain

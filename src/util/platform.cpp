@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <fstream>
 #include <random>
 #include <system_error>
@@ -126,6 +127,25 @@ int terminal_width() {
 }
 
 #endif
+
+namespace {
+
+void (*interrupt_handler)(int) = nullptr;
+
+void handle_interrupt(int number) {
+  std::signal(number, SIG_DFL);
+  if (interrupt_handler != nullptr) interrupt_handler(number);
+}
+
+}  // namespace
+
+void on_interrupt(void (*handler)(int signal)) {
+  if (handler != nullptr) interrupt_handler = handler;
+  for (const int number : {SIGINT, SIGTERM}) {
+    const auto before = std::signal(number, handler != nullptr ? handle_interrupt : SIG_DFL);
+    if (before == SIG_IGN) std::signal(number, SIG_IGN);
+  }
+}
 
 // The standard demands what POSIX does: an existing file is replaced in one step.
 void replace_file(const std::filesystem::path& from, const std::filesystem::path& to) {

@@ -40,6 +40,12 @@ bool stderr_is_terminal();
 /// Columns of the terminal, or 80 if there is none.
 int terminal_width();
 
+/// Calls `handler` with the signal's number when the user interrupts the program (Ctrl-C) or it is
+/// asked to terminate: once, the second time the program ends. Null: the program ends the first
+/// time. A signal that the program was started to ignore stays ignored. The handler must be safe in
+/// signals.
+void on_interrupt(void (*handler)(int signal));
+
 /// Renames `from` to `to` in one step that replaces an existing file. Both must lie in one file
 /// system. Throws std::filesystem::filesystem_error.
 void replace_file(const std::filesystem::path& from, const std::filesystem::path& to);

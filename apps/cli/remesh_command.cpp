@@ -1,0 +1,407 @@
+#include "remesh_command.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "arguments.h"
+#include "meshgrain/fields_file.h"
+#include "meshgrain/io.h"
+#include "meshgrain/remesh.h"
+#include "meshgrain/statistics.h"
+#include "meshgrain/system.h"
+#include "progress_bar.h"
+#include "report.h"
+
+namespace meshgrain::cli {
+namespace {
+
+/// What the command line says.
+struct Arguments {
+  std::string input, output, report, fields, fields_out;
+  int threads = 0;
+  bool quiet = false;
+  int posy = 4;
+  bool posy_given = false, dominant = false, hexagons = false, single_level = false;
+  bool ignored = false;
+  bool target_given = false;
+  std::string energy, orientation_energy, sizing = "uniform";
+  ReadOptions read;
+  RemeshOptions remesh;
+};
+
+template <class T>
+using Names = std::map<std::string, T>;
+
+const Names<Schedule> schedules = {
+    {"blocks", Schedule::blocks}, {"random", Schedule::random_order}, {"jacobi", Schedule::jacobi}};
+const Names<OrientationEnergy> orientation_energies = {{"extrinsic", OrientationEnergy::extrinsic},
+                                                       {"intrinsic", OrientationEnergy::intrinsic},
+                                                       {"convex", OrientationEnergy::convex}};
+const Names<PositionEnergy> position_energies = {{"extrinsic", PositionEnergy::extrinsic},
+                                                 {"intrinsic", PositionEnergy::intrinsic}};
+const Names<GraphNodes> graph_nodes = {{"vertices", GraphNodes::vertices},
+                                       {"faces", GraphNodes::faces}};
+const Names<GraphWeights> graph_weights = {{"uniform", GraphWeights::uniform},
+                                           {"geometric", GraphWeights::geometric}};
+
+/// An option that takes one of several names.
+template <class T>
+CLI::Option* add_choice(CLI::App& app, const std::string& option, T& value, const Names<T>& names,
+                        const std::string& type_name, const std::string& text) {
+  const auto set = [&value, &names, option](const std::string& name) {
+    const auto found = names.find(name);
+    if (found == names.end()) {
+      std::string known;
+      for (const auto& entry : names) known += (known.empty() ? "" : ", ") + entry.first;
+      throw CLI::ValidationError(option, "\"" + name + "\" is none of " + known);
+    }
+    value = found->second;
+  };
+  return app.add_option_function<std::string>(option, set, text)->type_name(type_name);
+}
+
+/// Refuses "nan" and "inf", which CLI11's ranges let through.
+std::string refuse_unless_finite(const std::string& text) {
+  double number = 0;
+  const bool finite = CLI::detail::lexical_cast(text, number) && std::isfinite(number);
+  return finite ? "" : "\"" + text + "\" is not a number";
+}
+
+constexpr const char* description =
+    "Meshgrain turns a mesh or point cloud into a mesh of well-shaped quads, triangles or "
+    "hexagons\n"
+    "that follow its shape.";
+
+constexpr const char* commands =
+    "Other commands (each has a --help of its own):\n"
+    "  meshgrain stats MESH            figures of a mesh, and its distance to another\n"
+    "  meshgrain picture MESH FILE.png draw a mesh\n"
+    "  meshgrain sample [NAME]         make a shape to try things on\n"
+    "A file with the name of a command is meant by ./stats, for example.\n"
+    "\n"
+    "-f, -v and -s always mean the mesh that is written. (Instant Meshes, whose options these "
+    "are,\n"
+    "writes four times as many faces and vertices as its pure quads are asked for.)";
+
+void add_options(CLI::App& app, Arguments& a) {
+  RemeshOptions& o = a.remesh;
+  app.set_version_flag("--version", "meshgrain " + std::string(version()), "show the version");
+
+  app.add_option("INPUT", a.input, "mesh or point cloud: OBJ, PLY, OFF, STL, ALN, XYZ or PTS")
+      ->required()
+      ->type_name("");
+  app.add_option("-o,--output", a.output, "the mesh to write: OBJ, PLY, OFF or STL")
+      ->required()
+      ->type_name("FILE");
+
+  app.add_option("-f,--faces", o.face_count, "so many faces, in the mesh that is written")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N")
+      ->group("How fine (one of these; by default a sixteenth of the input's vertices)");
+  app.add_option("-v,--vertices", o.vertex_count, "so many vertices, in the mesh that is written")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N")
+      ->group(app.get_option("-f")->get_group());
+  app.add_option("-s,--scale", o.edge_length, "edges so long, in the mesh that is written")
+      ->check(refuse_unless_finite)
+      ->check(CLI::PositiveNumber)
+      ->type_name("LENGTH")
+      ->group(app.get_option("-f")->get_group());
+  app.get_option("-f")->excludes("-v")->excludes("-s");
+  app.get_option("-v")->excludes("-s");
+
+  const auto sizes = [&](CLI::Option* option) { option->group("Faces of different sizes"); };
+  sizes(app.add_option("--sizing", a.sizing,
+                       "where faces are small: uniform, curvature (where it bends), distance:X,Y,Z "
+                       "(near a point) or value:NAME (by a number of the input's PLY vertices)")
+            ->type_name("HOW"));
+  sizes(app.add_option("--sizing-ratio", o.sizing.ratio, "largest to smallest edge length (4)")
+            ->check(refuse_unless_finite)
+            ->check(CLI::Range(1.0, 1000.0))
+            ->type_name("R"));
+
+  const auto faces = [&](CLI::Option* option) {
+    option->group("Which faces (default: only quads)");
+  };
+  faces(
+      app.add_flag("-D,--dominant", a.dominant, "mostly quads, with some triangles and pentagons"));
+  faces(app.add_option("-p,--posy", a.posy, "position symmetry: 4 (quads) or 6 (triangles)")
+            ->check(CLI::IsMember({4, 6}))
+            ->type_name("N"));
+  faces(app.add_option("-r,--rosy", o.rosy,
+                       "orientation symmetry: 1, 2, 4 or 6 (4 for quads, 6 for triangles)")
+            ->check(CLI::IsMember({1, 2, 4, 6}))
+            ->type_name("N"));
+  faces(app.add_flag("--hexagons", a.hexagons, "hexagons: the dual of triangles"));
+  faces(app.add_flag("--manifold", o.manifold, "drop faces where the result is not manifold"));
+
+  const auto follow = [&](CLI::Option* option) { option->group("What to follow"); };
+  follow(app.add_option("-c,--crease", o.graph.crease_degrees,
+                        "edges with a larger angle between their faces are creases (off)")
+             ->check(refuse_unless_finite)
+             ->check(CLI::Range(0.0, 180.0))
+             ->type_name("DEGREES"));
+  follow(app.add_flag("-b,--boundaries", o.align_border, "follow the border of an open mesh"));
+  follow(app.add_option("--curvature", o.curvature.strength,
+                        "pull towards the directions of curvature: 0 (off) to 1")
+             ->check(refuse_unless_finite)
+             ->check(CLI::Range(0.0, 1.0))
+             ->type_name("STRENGTH"));
+  follow(
+      app.add_option("--curvature-hard", o.curvature.hard_degrees,
+                     "follow them exactly where the surface bends more over an edge's length (off)")
+          ->check(refuse_unless_finite)
+          ->check(CLI::Range(0.0, 180.0))
+          ->type_name("DEGREES"));
+
+  const auto method = [&](CLI::Option* option) { option->group("Method"); };
+  method(app.add_flag_callback(
+      "-i,--intrinsic", [&a] { a.energy = "intrinsic"; }, "the same as --energy intrinsic"));
+  method(app.add_option("--energy", a.energy, "of both fields: extrinsic (default) or intrinsic")
+             ->check(CLI::IsMember({"extrinsic", "intrinsic"}))
+             ->type_name("ENERGY"));
+  app.get_option("--energy")->excludes("-i");
+  method(app.add_option("--orientation-energy", a.orientation_energy,
+                        "of the orientation field alone: extrinsic, intrinsic or convex")
+             ->check(CLI::IsMember({"extrinsic", "intrinsic", "convex"}))
+             ->type_name("ENERGY"));
+  method(add_choice(app, "--solver", o.solver.schedule, schedules, "SOLVER",
+                    "blocks (parallel Gauss-Seidel, default), random (order) or jacobi"));
+  method(app.add_option("--sweeps", o.solver.sweeps, "on each level (6)")
+             ->check(CLI::Range(1, 1000000))
+             ->type_name("N"));
+  method(app.add_flag("--single-level", a.single_level, "no multiresolution"));
+  method(add_choice(app, "--graph", o.graph.nodes, graph_nodes, "NODES",
+                    "fields live on the input's vertices (default) or faces"));
+  method(add_choice(app, "--weights", o.graph.weights, graph_weights, "WEIGHTS",
+                    "of the graph's edges: uniform (default) or geometric"));
+  method(app.add_option("-k,--knn", o.graph.neighbors, "neighbours of each point of a cloud (10)")
+             ->check(CLI::Range(3, 1000))
+             ->type_name("N"));
+  method(app.add_option("-S,--smooth", o.smoothing, "smoothing steps at the end (10)")
+             ->check(CLI::Range(0, 100000))
+             ->type_name("N"));
+  method(app.add_option("--seed", o.solver.seed, "of the random start (0)")->type_name("N"));
+  method(app.add_flag("--weld", a.read.weld, "merge vertices at the same place first"));
+
+  const auto files = [&](CLI::Option* option) { option->group("Files and running"); };
+  files(app.add_option("--fields", a.fields,
+                       "use the fields in this file instead of solving for them")
+            ->type_name("FILE"));
+  files(app.add_option("--fields-out", a.fields_out, "write the fields to this file (PLY)")
+            ->type_name("FILE"));
+  files(
+      app.add_option("--report", a.report, "write times, counts, memory and energies to this file")
+          ->type_name("FILE.json"));
+  files(app.add_option("-t,--threads", a.threads, "threads to use (all cores)")
+            ->check(CLI::Range(1, 4096))
+            ->type_name("N"));
+  files(app.add_flag("--quiet", a.quiet, "print nothing but errors"));
+  files(app.add_flag("-d,--deterministic", a.ignored,
+                     "always so; accepted for Instant Meshes' scripts"));
+  files(app.add_flag("-C,--compat", a.ignored, "no effect; accepted for Instant Meshes' scripts"));
+  app.footer(commands);
+}
+
+/// "1.5,0,-2" as three numbers.
+Eigen::Vector3d parse_point(const std::string& text) {
+  Eigen::Vector3d point;
+  std::size_t at = 0;
+  for (int i = 0; i < 3; ++i) {
+    const std::size_t end = i < 2 ? text.find(',', at) : text.size();
+    double number = 0;
+    if (end == text.npos || !CLI::detail::lexical_cast(text.substr(at, end - at), number) ||
+        !std::isfinite(number)) {
+      throw UsageError("--sizing distance:X,Y,Z needs three numbers, got \"" + text + "\"");
+    }
+    point[i] = number;
+    at = end + 1;
+  }
+  return point;
+}
+
+void parse_sizing(Arguments& a) {
+  Sizing& sizing = a.remesh.sizing;
+  const std::size_t colon = a.sizing.find(':');
+  const std::string kind = a.sizing.substr(0, colon);
+  const std::string rest = colon == a.sizing.npos ? "" : a.sizing.substr(colon + 1);
+  if (kind == "distance") {
+    sizing.kind = Sizing::Kind::distance;
+    sizing.point = parse_point(rest);
+  } else if (kind == "value" && !rest.empty()) {
+    sizing.kind = Sizing::Kind::values;
+    a.read.value_name = rest;
+  } else if (a.sizing == "curvature") {
+    sizing.kind = Sizing::Kind::curvature;
+  } else if (a.sizing != "uniform") {
+    throw UsageError("--sizing \"" + a.sizing +
+                     "\" is none of uniform, curvature, distance:X,Y,Z, value:NAME");
+  }
+}
+
+/// What needs more than one option to tell.
+void resolve(Arguments& a) {
+  RemeshOptions& o = a.remesh;
+  parse_sizing(a);
+  if (a.hexagons && a.dominant) throw UsageError("--hexagons and -D exclude each other");
+  if (a.hexagons && a.posy_given && a.posy == 4) {
+    throw UsageError("--hexagons are the dual of triangles, and need -p 6 or none");
+  }
+  const bool triangular = a.hexagons || a.posy == 6;
+  o.faces = a.hexagons   ? OutputFaces::hexagons
+            : triangular ? OutputFaces::triangles
+            : a.dominant ? OutputFaces::quad_dominant
+                         : OutputFaces::quads;
+  if (o.rosy != 0 && (triangular ? 6 : 4) % o.rosy != 0) {
+    throw UsageError(triangular
+                         ? "-r 4 does not fit triangles and hexagons: use -r 1, 2 or 6"
+                         : "-r 6 does not fit quads: use -r 1, 2 or 4, or -p 6 for triangles");
+  }
+  if (!a.energy.empty()) {
+    o.orientation_energy = orientation_energies.at(a.energy);
+    o.position_energy = position_energies.at(a.energy);
+  }
+  if (!a.orientation_energy.empty()) {
+    o.orientation_energy = orientation_energies.at(a.orientation_energy);
+  }
+  o.solver.multiresolution = !a.single_level;
+  o.solver.record_energy = !a.report.empty();
+
+  // Two results in one file would leave one.
+  const std::array<std::string, 3> outputs{a.output, a.fields_out, a.report};
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!outputs[i].empty() && std::filesystem::path(outputs[i]).lexically_normal() ==
+                                     std::filesystem::path(outputs[j]).lexically_normal()) {
+        throw UsageError("two outputs have the same name, " + file_name(outputs[i]));
+      }
+    }
+  }
+}
+
+/// Given fields decide what they decide.
+void check_fields(const Arguments& a, const Fields& fields) {
+  const std::string name = file_name(a.fields);
+  if (a.remesh.rosy != 0 && a.remesh.rosy != fields.orientation.rosy) {
+    throw UsageError(fmt::format("{} holds orientations of symmetry {}, not -r {}", name,
+                                 fields.orientation.rosy, a.remesh.rosy));
+  }
+  const int posy = a.hexagons ? 6 : a.posy;
+  if (!fields.position.points.empty() && fields.position.posy != posy) {
+    throw UsageError(fmt::format(
+        "{} holds positions for {}", name,
+        fields.position.posy == 6 ? "triangles: add -p 6" : "quads: leave out -p and --hexagons"));
+  }
+}
+
+std::string describe(const MeshStatistics& s) {
+  std::string text;
+  const auto add = [&](std::size_t count, const char* one, const char* many) {
+    if (count > 0) text += (text.empty() ? "" : ", ") + counted(count, one, many);
+  };
+  add(s.quads, "quad", "quads");
+  add(s.triangles, "triangle", "triangles");
+  add(s.larger, "larger polygon", "larger polygons");
+  add(s.vertices, "vertex", "vertices");
+  return text + fmt::format(", {} irregular", with_commas(s.irregular_vertices));
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+Json stage(const char* name, double seconds) {
+  return {{"name", name}, {"seconds", seconds}};
+}
+
+void write_report(const Arguments& a, const RemeshReport& report, const MeshStatistics& statistics,
+                  int threads, double read_seconds, double write_seconds, double seconds) {
+  Json json = {
+      {"version", version()},
+      {"input",
+       {{"file", a.input}, {"vertices", report.input_vertices}, {"faces", report.input_faces}}},
+      {"options", to_json(a.remesh)},
+      {"threads", threads},
+      {"seconds", seconds}};
+  json.update(to_json(report));
+  Json& stages = json["stages"];
+  stages.insert(stages.begin(), stage("read", read_seconds));
+  stages.push_back(stage("write", write_seconds));
+  json["peak_memory_bytes"] = peak_memory();
+  json["output"] = {{"file", a.output}};
+  json["output"].update(to_json(statistics));
+  // Names need not be UTF-8, which JSON must be.
+  write_file(a.report, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+void run(Arguments& a, Context& context) {
+  const auto start = std::chrono::steady_clock::now();
+  check_writable(a.output);
+  for (const std::string& path : {a.fields_out, a.report}) {
+    if (!path.empty()) check_place(path);
+  }
+  ProgressBar bar(!a.quiet);
+  context.on_progress = [&](std::string_view stage, double share) { bar.show(stage, share); };
+
+  Mesh input = read_mesh(a.input, a.read, context);
+  Fields fields;
+  if (!a.fields.empty()) {
+    fields = read_fields(a.fields, context);
+    check_fields(a, fields);
+    a.remesh.fields = &fields;
+  }
+  const double read_seconds = seconds_since(start);
+  RemeshResult result = remesh(std::move(input), a.remesh, context);
+  if (a.target_given && !fields.position.points.empty()) {
+    result.report.notes.push_back(
+        "the given positions decide how fine the mesh is, not -f, -v or -s");
+  }
+
+  context.progress("write", 0);
+  const auto write_start = std::chrono::steady_clock::now();
+  if (!a.fields_out.empty()) write_fields(a.fields_out, result.fields);
+  write_mesh(a.output, result.mesh);
+  const double write_seconds = seconds_since(write_start);
+  const double seconds = seconds_since(start);
+  const bool summary = !a.quiet && stderr_is_terminal();
+  MeshStatistics statistics;
+  if (summary || !a.report.empty()) statistics = mesh_statistics(result.mesh);
+  if (!a.report.empty()) {
+    write_report(a, result.report, statistics, context.threads(), read_seconds, write_seconds,
+                 seconds);
+  }
+  bar.clear();
+  if (!a.quiet) {
+    for (const std::string& note : result.report.notes) {
+      fmt::print(stderr, "meshgrain: note: {}\n", note);
+    }
+  }
+  if (summary) {
+    fmt::print(stderr, "{}: {} ({:.2f} s)\n", file_name(a.output), describe(statistics), seconds);
+  }
+}
+
+}  // namespace
+
+void remesh_command(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app(description, "meshgrain");
+  add_options(app, arguments);
+  if (!parse(app, argc, argv)) return;
+  arguments.posy_given = app.count("--posy") > 0;
+  arguments.target_given = app.count("-f") + app.count("-v") + app.count("-s") > 0;
+  resolve(arguments);
+  Context context(arguments.threads);
+  interruptible(context, [&] { run(arguments, context); });
+}
+
+}  // namespace meshgrain::cli

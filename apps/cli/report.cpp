@@ -1,0 +1,108 @@
+#include "report.h"
+
+namespace meshgrain::cli {
+namespace {
+
+const char* name(OutputFaces faces) {
+  constexpr const char* names[] = {"quads", "quad-dominant", "triangles", "hexagons"};
+  return names[static_cast<int>(faces)];
+}
+
+Json energies(const std::vector<EnergyRecord>& records) {
+  Json list = Json::array();
+  for (const EnergyRecord& r : records) {
+    list.push_back({{"level", r.level}, {"sweep", r.sweep}, {"energy", r.energy}});
+  }
+  return list;
+}
+
+Json number_or_null(const std::optional<std::size_t>& number) {
+  return number ? Json(*number) : Json(nullptr);
+}
+
+}  // namespace
+
+Json to_json(const MeshStatistics& s) {
+  return {{"vertices", s.vertices},
+          {"faces", s.faces},
+          {"triangles", s.triangles},
+          {"quads", s.quads},
+          {"larger", s.larger},
+          {"irregular_vertices", s.irregular_vertices},
+          {"singularities", s.singularities},
+          {"area", {{"sigma", s.area_sigma}, {"min", s.area_min}, {"max", s.area_max}}},
+          {"angle",
+           {{"sigma", s.angle_sigma},
+            {"min", s.angle_min},
+            {"max", s.angle_max},
+            {"min_mean", s.angle_min_mean},
+            {"max_mean", s.angle_max_mean}}},
+          {"edge", {{"mean", s.edge_mean}, {"sigma", s.edge_sigma}}},
+          {"inverted_quads", s.inverted_quads},
+          {"components", s.components},
+          {"boundary_loops", s.boundary_loops},
+          {"non_manifold_edges", s.non_manifold_edges},
+          {"non_manifold_vertices", s.non_manifold_vertices},
+          {"isolated_vertices", s.isolated_vertices},
+          {"euler", s.euler}};
+}
+
+Json to_json(const SurfaceDistance& distance) {
+  return {{"mean", distance.mean}, {"max", distance.max}};
+}
+
+Json to_json(const RemeshReport& report) {
+  Json stages = Json::array();
+  for (const StageTime& stage : report.stages) {
+    stages.push_back({{"name", stage.name}, {"seconds", stage.seconds}});
+  }
+  return {{"stages", stages},
+          {"graph", {{"nodes", report.nodes}, {"edges", report.edges}, {"levels", report.levels}}},
+          {"edge_length", report.edge_length},
+          {"singularities",
+           {{"orientation", number_or_null(report.orientation_singularities)},
+            {"position", number_or_null(report.position_singularities)}}},
+          {"energies",
+           {{"orientation", energies(report.orientation_energies)},
+            {"position", energies(report.position_energies)}}},
+          {"notes", report.notes}};
+}
+
+Json to_json(const RemeshOptions& o) {
+  constexpr const char* sizings[] = {"uniform", "curvature", "distance", "value"};
+  constexpr const char* schedules[] = {"blocks", "random", "jacobi"};
+  constexpr const char* energies[] = {"extrinsic", "intrinsic", "convex"};
+  const bool triangular = o.faces == OutputFaces::triangles || o.faces == OutputFaces::hexagons;
+  Json json = {{"result", name(o.faces)},
+               {"rosy", o.rosy != 0  ? o.rosy
+                        : triangular ? 6
+                                     : 4},
+               {"posy", triangular ? 6 : 4},
+               {"scale", o.edge_length},
+               {"faces", o.face_count},
+               {"vertices", o.vertex_count},
+               {"sizing", sizings[static_cast<int>(o.sizing.kind)]},
+               {"sizing_ratio", o.sizing.ratio},
+               {"graph", o.graph.nodes == GraphNodes::faces ? "faces" : "vertices"},
+               {"weights", o.graph.weights == GraphWeights::geometric ? "geometric" : "uniform"},
+               {"knn", o.graph.neighbors},
+               {"crease", o.graph.crease_degrees},
+               {"orientation_energy", energies[static_cast<int>(o.orientation_energy)]},
+               {"position_energy", energies[static_cast<int>(o.position_energy)]},
+               {"solver", schedules[static_cast<int>(o.solver.schedule)]},
+               {"sweeps", o.solver.sweeps},
+               {"multiresolution", o.solver.multiresolution},
+               {"seed", o.solver.seed},
+               {"boundaries", o.align_border},
+               {"curvature", o.curvature.strength},
+               {"curvature_hard", o.curvature.hard_degrees},
+               {"smooth", o.smoothing},
+               {"manifold", o.manifold}};
+  if (o.sizing.kind == Sizing::Kind::distance) {
+    const auto& p = o.sizing.point;
+    json["sizing_point"] = {p.x(), p.y(), p.z()};
+  }
+  return json;
+}
+
+}  // namespace meshgrain::cli
