@@ -100,7 +100,6 @@ Extraction extract_from_graph(const Graph& graph, const OrientationField& orient
   repair.cut_pinches();
   repair.find_holes(mark(clusters.edges, clusters.border), clusters.on_border,
                     options.largest_filled_gap);
-  repair.part_holes();
   repair.split_large();
   if (position.posy == 4) {
     repair.remove_superfluous_edges();

@@ -93,27 +93,6 @@ void FaceRepair::cut_pinches() {
   }
 }
 
-void FaceRepair::part_holes() {
-  const auto vertices = static_cast<Index>(clusters_.positions.size());
-  for (Index v = 0; v < vertices; ++v) {
-    for (bool again = true; again;) {
-      again = false;
-      const Index start = map_.leaving(v);
-      if (start == no_index) break;
-      Index first = no_index, h = start;
-      do {
-        if (hole_[h] && first != no_index) {
-          cut(first, h);
-          again = true;
-          break;
-        }
-        if (hole_[h]) first = h;
-        h = map_.around(h);
-      } while (h != start);
-    }
-  }
-}
-
 void FaceRepair::find_holes(std::span<const std::uint8_t> border_edges,
                             std::span<const std::uint8_t> border_vertices,
                             std::size_t largest_gap) {

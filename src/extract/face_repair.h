@@ -27,9 +27,6 @@ class FaceRepair {
   void find_holes(std::span<const std::uint8_t> border_edges,
                   std::span<const std::uint8_t> border_vertices, std::size_t largest_gap);
 
-  /// Cuts vertices at which several holes meet, so that the faces around each are one fan.
-  void part_holes();
-
   /// Triangles only: contracts edges much shorter than the target, which lead to clusters of very few
   /// nodes (the spurious ones of section 3.8) or hold two vertices of one lattice point apart.
   void contract_short_edges(const EdgeLength& edge_length, const std::vector<float>& cover);
