@@ -106,7 +106,9 @@ Extraction extract_from_graph(const Graph& graph, const OrientationField& orient
                     options.largest_filled_gap);
   repair.split_large();
   if (position.posy == 4) {
-    repair.remove_superfluous_edges();
+    repair.improve_edges();
+    repair.close_quads();
+    repair.improve_edges();
     repair.remove_doublets();
   } else {
     repair.flip_edges();
@@ -178,7 +180,9 @@ Extraction extract_from_mesh(const Graph& graph, const OrientationField& orienta
   }
   if (position.posy == 4) {
     repair.remove_diagonals(collapsed.jumps);
-    repair.remove_superfluous_edges();
+    repair.improve_edges();
+    repair.close_quads();
+    repair.improve_edges();
     repair.remove_doublets();
   } else {
     repair.flip_edges();
