@@ -21,9 +21,9 @@ void take_dual(Extraction& extraction);
 std::size_t make_manifold(Extraction& extraction);
 
 struct SmoothOptions {
-  int iterations = 30;
+  int iterations = 40;
   /// How strongly faces are drawn to one size, 0 to 1: areas become more even, angles a little less.
-  double evenness = 0.4;
+  double evenness = 0.5;
   EdgeLength relative_size{1.0f};  ///< Relative to each other: one, or one a vertex.
 };
 

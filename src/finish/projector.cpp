@@ -38,6 +38,18 @@ Vec3 Projector::nearest_around(const Vec3& p, Index vertex, Index& nearest_corne
   return best;
 }
 
+Vec3 Projector::normal(Index vertex) const {
+  if (surface_.is_point_cloud()) return graph_.normals[vertex];
+  Vec3 sum = Vec3::Zero();
+  for (const Index f : around_[vertex]) {
+    const auto face = surface_.faces[f];
+    sum += (surface_.positions[face[1]] - surface_.positions[face[0]])
+               .cross(surface_.positions[face[2]] - surface_.positions[face[0]]);
+  }
+  const float length = sum.norm();
+  return length > 0 ? Vec3(sum / length) : Vec3(Vec3::Zero());
+}
+
 Vec3 Projector::project(const Vec3& p, Index& seed) const {
   if (surface_.is_point_cloud()) return project_on_cloud(p, seed);
   Index corner = seed;

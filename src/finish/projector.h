@@ -19,6 +19,9 @@ class Projector {
   /// becomes the one where the walk ended.
   Vec3 project(const Vec3& p, Index& seed) const;
 
+  /// The normal of the surface at a vertex.
+  Vec3 normal(Index vertex) const;
+
  private:
   Vec3 nearest_around(const Vec3& p, Index vertex, Index& nearest_corner) const;
   Vec3 project_on_cloud(const Vec3& p, Index& seed) const;

@@ -18,9 +18,10 @@ namespace {
 /// For every corner of a face, its place in the regular polygon that fits the face best: the face in
 /// its mean plane as complex numbers, of which the first Fourier coefficient is that polygon
 /// (in the least-squares sense, with free size and turn). The size is then drawn towards that of a
-/// polygon of the given side.
-void regular_targets(std::span<const Index> face, const std::vector<Vec3>& positions, float side,
-                     float evenness, std::span<Vec3> targets) {
+/// polygon of the given side. A face that has turned over, or nearly, is fitted by a polygon that has
+/// not: `upward` is the normal of the surface under it.
+void regular_targets(std::span<const Index> face, const std::vector<Vec3>& positions,
+                     const Vec3& upward, float side, float evenness, std::span<Vec3> targets) {
   const std::size_t n = face.size();
   Vec3 center = Vec3::Zero(), normal = Vec3::Zero();
   for (const Index v : face) center += positions[v];
@@ -28,6 +29,7 @@ void regular_targets(std::span<const Index> face, const std::vector<Vec3>& posit
   for (std::size_t k = 0; k < n; ++k) {
     normal += (positions[face[k]] - center).cross(positions[face[(k + 1) % n]] - center);
   }
+  if (normal.dot(upward) < 0.2f * normal.norm()) normal = upward;
   const float length = normal.norm();
   if (!(length > 0)) {
     std::fill(targets.begin(), targets.end(), center);
@@ -148,6 +150,7 @@ void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
 
   std::vector<Vec3> targets(mesh.faces.corners().size());
   std::vector<Vec3> next(mesh.positions.size());
+  std::vector<Vec3> normals(mesh.positions.size());  // of the surface
   const std::size_t n = mesh.positions.size();
   for (int iteration = 0; iteration <= options.iterations; ++iteration) {
     context.progress("smoothing", (iteration + 0.5) / (options.iterations + 1.0));
@@ -159,13 +162,23 @@ void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
       mesh.positions.swap(next);
       continue;
     }
+    context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) normals[v] = projector.normal(seeds[v]);
+    });
     const float side = mean_side(mesh, options.relative_size);
     context.for_ranges(mesh.faces.size(), grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t f = begin; f < end; ++f) {
         float relative = 0;
-        for (const Index v : std::as_const(mesh.faces)[f]) relative += options.relative_size[v];
+        Vec3 upward = Vec3::Zero();
+        for (const Index v : std::as_const(mesh.faces)[f]) {
+          relative += options.relative_size[v];
+          upward += normals[v];
+        }
         relative /= static_cast<float>(mesh.faces.degree(f));
-        regular_targets(std::as_const(mesh.faces)[f], mesh.positions, relative * side, evenness,
+        const float length = upward.norm();
+        if (length > 0) upward /= length;
+        regular_targets(std::as_const(mesh.faces)[f], mesh.positions, upward, relative * side,
+                        evenness,
                         {targets.data() + mesh.faces.first(f), mesh.faces.degree(f)});
       }
     });
