@@ -24,12 +24,15 @@ struct SmoothOptions {
   int iterations = 40;
   /// How strongly faces are drawn to one size, 0 to 1: areas become more even, angles a little less.
   double evenness = 0.5;
+  /// Chains of edges that lie on creases of a mechanical part sharper than this stay on them; < 0:
+  /// none do.
+  double crease_degrees = 40;
   EdgeLength relative_size{1.0f};  ///< Relative to each other: one, or one a vertex.
 };
 
 /// Evens the faces out: each iteration moves every vertex to the mean of where it would be in the
 /// regular polygons that fit its faces best, and back onto the surface. Border vertices move along
-/// the border, and the ones at its corners stay. `surface` is the triangle mesh or point cloud that
+/// the border, those on creases along the crease, and the ones at corners stay. `surface` is the triangle mesh or point cloud that
 /// `graph` was built on.
 void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
             const SmoothOptions& options = {}, const Context& context = Context());

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "finish/feature_lines.h"
 #include "finish/projector.h"
-#include "mesh/border.h"
 #include "mesh/vertex_faces.h"
 #include "meshgrain/finish.h"
 #include "meshgrain/surface.h"
@@ -80,52 +80,6 @@ float mean_side(const Mesh& mesh, const EdgeLength& relative) {
   return wanted > 0 ? static_cast<float>(std::sqrt(area / wanted)) : 0.0f;
 }
 
-/// Which vertices of the output lie on its border, and where on the input's border they slide.
-struct Rail {
-  std::vector<Index> seed;  // a vertex of the input's border, or no_index for inner vertices
-  std::vector<std::uint8_t> fixed;
-};
-
-Rail attach_to_border(const Extraction& extraction, const Mesh& surface,
-                      const BorderLine& border) {
-  const Mesh& mesh = extraction.mesh;
-  Rail rail;
-  rail.seed.assign(mesh.positions.size(), no_index);
-  rail.fixed.assign(mesh.positions.size(), 0);
-  const auto edges = rim_edges(mesh);
-  float mean = 0;
-  for (const auto& [a, b] : edges) {
-    rail.fixed[a] = rail.fixed[b] = 1;  // without a border of the input nearby they stay
-    mean += (mesh.positions[a] - mesh.positions[b]).norm();
-  }
-  if (edges.empty() || border.empty()) return rail;
-  mean /= static_cast<float>(edges.size());
-
-  // Clusters on the border have their nearest node there. The nearest output vertex of each corner
-  // takes its place.
-  std::vector<Index> owner(surface.positions.size(), no_index);
-  for (Index v = 0; v < mesh.positions.size(); ++v) {
-    const Index seed = extraction.nodes[v];
-    if (!rail.fixed[v] || !border.contains(seed)) continue;
-    rail.fixed[v] = 0;
-    rail.seed[v] = seed;
-    border.for_corners_near(seed, mean, [&](Index corner) {
-      Index& nearest = owner[corner];
-      const auto distance = [&](Index w) {
-        return (mesh.positions[w] - surface.positions[corner]).squaredNorm();
-      };
-      if (distance(v) > mean * mean) return;
-      if (nearest == no_index || distance(v) < distance(nearest)) nearest = v;
-    });
-  }
-  for (const Index b : border.vertices()) {
-    if (owner[b] == no_index) continue;
-    rail.fixed[owner[b]] = 1;
-    rail.seed[owner[b]] = b;
-  }
-  return rail;
-}
-
 }  // namespace
 
 void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
@@ -137,15 +91,15 @@ void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
   Mesh& mesh = extraction.mesh;
   std::vector<Index>& seeds = extraction.nodes;
   const Projector projector(surface, graph);
-  const BorderLine border(surface, rim_edges(surface, context));
-  Rail rail = attach_to_border(extraction, surface, border);
+  const FeatureLines lines(surface, options.crease_degrees, context);
+  Rails rails = attach_to_lines(extraction, surface, lines);
   const VertexFaces around = vertex_faces(mesh);
 
   const auto place = [&](const Vec3& p, std::size_t v) -> Vec3 {
-    if (rail.seed[v] != no_index) {
-      return rail.fixed[v] ? surface.positions[rail.seed[v]] : border.project(p, rail.seed[v]);
+    if (rails.seed[v] != no_index) {
+      return rails.fixed[v] ? surface.positions[rails.seed[v]] : lines.project(p, rails.seed[v]);
     }
-    return rail.fixed[v] ? mesh.positions[v] : projector.project(p, seeds[v]);
+    return rails.fixed[v] ? mesh.positions[v] : projector.project(p, seeds[v]);
   };
 
   std::vector<Vec3> targets(mesh.faces.corners().size());

@@ -1,14 +1,22 @@
 #include "mesh/border.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "mesh/vertex_faces.h"
 
 namespace meshgrain {
 namespace {
 
-/// Calls `take(a, b, forth, back, out)` for every edge a < b: how many faces run from a to b, and how
-/// many from b to a.
+/// The faces of an edge: how many run along it in either direction, and one of each.
+struct EdgeFaces {
+  int forth = 0, back = 0;
+  Index left = no_index, right = no_index;
+};
+
+/// Calls `take(a, b, faces, out)` for every edge a < b.
 template <typename Take>
 std::vector<std::array<Index, 2>> select_edges(const Mesh& mesh, const Take& take,
                                                const Context& context) {
@@ -18,7 +26,7 @@ std::vector<std::array<Index, 2>> select_edges(const Mesh& mesh, const Take& tak
   std::vector<std::vector<std::array<Index, 2>>> found((n + grain - 1) / grain);
   context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
     struct Use {
-      Index other;
+      Index other, face;
       bool forth;
     };
     std::vector<Use> uses;
@@ -29,17 +37,20 @@ std::vector<std::array<Index, 2>> select_edges(const Mesh& mesh, const Take& tak
         const auto face = mesh.faces[f];
         for (std::size_t k = 0; k < face.size(); ++k) {
           const Index from = face[k], to = face[k + 1 == face.size() ? 0 : k + 1];
-          if (from == a && to > a) uses.push_back({to, true});
-          if (to == a && from > a) uses.push_back({from, false});
+          if (from == a && to > a) uses.push_back({to, f, true});
+          if (to == a && from > a) uses.push_back({from, f, false});
         }
       }
       std::sort(uses.begin(), uses.end(),
                 [](const Use& x, const Use& y) { return x.other < y.other; });
       for (std::size_t k = 0; k < uses.size();) {
-        int forth = 0, back = 0;
+        EdgeFaces faces;
         const Index b = uses[k].other;
-        for (; k < uses.size() && uses[k].other == b; ++k) ++(uses[k].forth ? forth : back);
-        take(a, b, forth, back, found[begin / grain]);
+        for (; k < uses.size() && uses[k].other == b; ++k) {
+          ++(uses[k].forth ? faces.forth : faces.back);
+          (uses[k].forth ? faces.left : faces.right) = uses[k].face;
+        }
+        take(a, b, faces, found[begin / grain]);
       }
     }
   });
@@ -55,9 +66,9 @@ using Edges = std::vector<std::array<Index, 2>>;
 std::vector<std::array<Index, 2>> border_edges(const Mesh& mesh, const Context& context) {
   return select_edges(
       mesh,
-      [](Index a, Index b, int forth, int back, Edges& out) {
-        if (forth + back != 1) return;
-        out.push_back(forth == 1 ? std::array{a, b} : std::array{b, a});
+      [](Index a, Index b, const EdgeFaces& faces, Edges& out) {
+        if (faces.forth + faces.back != 1) return;
+        out.push_back(faces.forth == 1 ? std::array{a, b} : std::array{b, a});
       },
       context);
 }
@@ -65,8 +76,31 @@ std::vector<std::array<Index, 2>> border_edges(const Mesh& mesh, const Context& 
 std::vector<std::array<Index, 2>> rim_edges(const Mesh& mesh, const Context& context) {
   return select_edges(
       mesh,
-      [](Index a, Index b, int forth, int back, Edges& out) {
-        if (forth != 1 || back != 1) out.push_back({a, b});
+      [](Index a, Index b, const EdgeFaces& faces, Edges& out) {
+        if (faces.forth != 1 || faces.back != 1) out.push_back({a, b});
+      },
+      context);
+}
+
+std::vector<std::array<Index, 2>> crease_edges(const Mesh& mesh, double degrees,
+                                               const Context& context) {
+  const double cosine = std::cos(degrees * std::numbers::pi / 180);
+  const auto normal = [&](Index f) {
+    const auto face = mesh.faces[f];
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t k = 2; k < face.size(); ++k) {
+      sum += (mesh.positions[face[k - 1]] - mesh.positions[face[0]])
+                 .cross(mesh.positions[face[k]] - mesh.positions[face[0]]);
+    }
+    return sum;
+  };
+  return select_edges(
+      mesh,
+      [&](Index a, Index b, const EdgeFaces& faces, Edges& out) {
+        if (faces.forth != 1 || faces.back != 1) return;
+        const Vec3 left = normal(faces.left), right = normal(faces.right);
+        const double lengths = static_cast<double>(left.norm()) * right.norm();
+        if (lengths > 0 && left.dot(right) < cosine * lengths) out.push_back({a, b});
       },
       context);
 }
