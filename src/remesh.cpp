@@ -234,6 +234,7 @@ RemeshResult remesh(Mesh input, const RemeshOptions& options, const Context& con
   extract.energy = options.position_energy;
   if (!cloud && options.graph.nodes == GraphNodes::vertices) {
     extract.surface = &surface;
+    extract.manifold = options.manifold;
   } else {
     extract.border = border_of_graph(surface, graph, options.graph.nodes);
   }

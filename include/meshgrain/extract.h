@@ -15,6 +15,8 @@ struct ExtractOptions {
   /// collapsed, and the output has its components, borders and genus. Without it the paper's way is
   /// taken, which needs nothing but the graph; the options below are for that.
   const Mesh* surface = nullptr;
+  /// Over a mesh: leave the pieces apart that non-manifold edges and vertices of `surface` join.
+  bool manifold = false;
   /// Edges of the graph that lie on the border of the surface: where the output is open. Without any,
   /// gaps that the walk leaves are closed.
   std::vector<std::array<Index, 2>> border;

@@ -1,6 +1,8 @@
 #include "meshgrain/extract.h"
 
 #include <algorithm>
+#include <iterator>
+#include <map>
 #include <utility>
 
 #include "extract/clusters.h"
@@ -8,6 +10,7 @@
 #include "extract/face_repair.h"
 #include "extract/mesh_clusters.h"
 #include "extract/polygon_map.h"
+#include "mesh/vertex_faces.h"
 #include "util/union_find.h"
 
 namespace meshgrain {
@@ -58,10 +61,11 @@ void drop_fragments(Extraction& extraction, const Graph& graph) {
 }
 
 /// The closed orbits as faces, and only the vertices that they use.
-Extraction collect_faces(const PolygonMap& map, const FaceRepair& repair,
-                         const Clusters& clusters) {
+/// `vertex` gets the number of each cluster's vertex, or no_index.
+Extraction collect_faces(const PolygonMap& map, const FaceRepair& repair, const Clusters& clusters,
+                         std::vector<Index>& vertex) {
   Extraction result;
-  std::vector<Index> vertex(clusters.positions.size(), no_index);
+  vertex.assign(clusters.positions.size(), no_index);
   std::vector<std::uint8_t> seen(map.halfedges(), 0);
   std::vector<Index> orbit, face;
   for (Index h = 0; h < map.halfedges(); ++h) {
@@ -102,14 +106,64 @@ Extraction extract_from_graph(const Graph& graph, const OrientationField& orient
                     options.largest_filled_gap);
   repair.split_large();
   if (position.posy == 4) {
-    repair.remove_superfluous_edges();
+    repair.improve_edges();
+    repair.close_quads();
+    repair.improve_edges();
     repair.remove_doublets();
   } else {
     repair.flip_edges();
   }
-  Extraction result = collect_faces(map, repair, clusters);
+  std::vector<Index> vertex;
+  Extraction result = collect_faces(map, repair, clusters, vertex);
   drop_fragments(result, graph);
   return result;
+}
+
+/// Makes the pieces that a non-manifold surface was cut into meet again: two vertices that share
+/// vertices of the surface become one, those that share most first, unless they share a face.
+void join_pieces(Extraction& extraction, std::vector<CollapsedMesh::Meeting> meetings,
+                 std::span<const Index> vertex, const Context& context) {
+  if (meetings.empty()) return;
+  Mesh& mesh = extraction.mesh;
+  std::stable_sort(meetings.begin(), meetings.end(),
+                   [](const auto& a, const auto& b) { return a.count > b.count; });
+  const VertexFaces around = vertex_faces(mesh, context);
+  UnionFind sets(mesh.positions.size());
+  std::map<Index, std::vector<Index>> members;  // of the sets with more than one
+  const auto members_of = [&](Index root) {
+    const auto it = members.find(root);
+    return it == members.end() ? std::vector<Index>{root} : it->second;
+  };
+  const auto share_face = [&](Index v, Index w) {
+    const auto a = around[v], b = around[w];
+    std::vector<Index> common;
+    std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
+    return !common.empty();
+  };
+  for (const auto& meeting : meetings) {
+    if (vertex[meeting.a] == no_index || vertex[meeting.b] == no_index) continue;
+    const Index a = sets.find(vertex[meeting.a]), b = sets.find(vertex[meeting.b]);
+    if (a == b) continue;
+    std::vector<Index> both = members_of(a);
+    const std::vector<Index> others = members_of(b);
+    bool apart = true;
+    for (const Index v : both) {
+      for (const Index w : others) apart = apart && !share_face(v, w);
+    }
+    if (!apart) continue;
+    both.insert(both.end(), others.begin(), others.end());
+    sets.unite(a, b);
+    members.erase(a);
+    members.erase(b);
+    members[sets.find(a)] = std::move(both);
+  }
+  for (const auto& [root, list] : members) {
+    Vec3 sum = Vec3::Zero();
+    for (const Index v : list) sum += mesh.positions[v];
+    mesh.positions[root] = sum / static_cast<float>(list.size());
+  }
+  for (Index& v : mesh.faces.corners()) v = sets.find(v);
+  drop_unused(extraction);
 }
 
 /// The way over the mesh itself, which keeps its topology.
@@ -126,12 +180,17 @@ Extraction extract_from_mesh(const Graph& graph, const OrientationField& orienta
   }
   if (position.posy == 4) {
     repair.remove_diagonals(collapsed.jumps);
-    repair.remove_superfluous_edges();
+    repair.improve_edges();
+    repair.close_quads();
+    repair.improve_edges();
     repair.remove_doublets();
   } else {
     repair.flip_edges();
   }
-  return collect_faces(collapsed.map, repair, collapsed.clusters);
+  std::vector<Index> vertex;
+  Extraction result = collect_faces(collapsed.map, repair, collapsed.clusters, vertex);
+  if (!options.manifold) join_pieces(result, collapsed.meetings, vertex, context);
+  return result;
 }
 
 }  // namespace

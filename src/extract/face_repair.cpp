@@ -303,35 +303,9 @@ void FaceRepair::remove_doublets() {
   }
 }
 
-/// By how much the number of irregular faces and inner vertices falls if an edge goes; -1 if it must
-/// stay.
-int FaceRepair::removal_gain(Index h) const {
-  const Index t = PolygonMap::twin(h);
-  if (map_.removed(h) || hole_[h] || hole_[t]) return -1;
-  const std::size_t a = map_.degree(h), b = map_.degree(t);
-  if (a + b - 2 > 5) return -1;
-  int gain = (a != 4) + (b != 4) - (a + b - 2 != 4);
-  for (const Index side : {h, t}) {
-    std::size_t valence = 0;
-    bool inner = true;
-    Index g = side;
-    do {
-      ++valence;
-      inner = inner && !hole_[g];
-      g = map_.around(g);
-    } while (g != side);
-    if (valence <= (inner ? 3u : 2u)) return -1;
-    if (inner) gain += (valence != 4) - (valence - 1 != 4);
-  }
-  return gain;
-}
-
-/// How far from regular the face would be.
 double FaceRepair::removal_cost(Index h) const {
-  const Index t = PolygonMap::twin(h);
-  std::vector<Index> corners;
-  for (Index g = map_.next(h); g != h; g = map_.next(g)) corners.push_back(map_.origin(g));
-  for (Index g = map_.next(t); g != t; g = map_.next(g)) corners.push_back(map_.origin(g));
+  std::vector<Index> corners = union_halfedges(h);
+  for (Index& corner : corners) corner = map_.origin(corner);
   std::vector<Index> sorted = corners;
   std::sort(sorted.begin(), sorted.end());
   if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) return 1e30;
@@ -352,33 +326,6 @@ void FaceRepair::remove_diagonals(std::span<const std::array<int, 2>> jumps) {
     if (map_.degree(h) != 3 || map_.degree(h + 1) != 3) continue;
     if (map_.valence(map_.origin(h)) <= 3 || map_.valence(map_.target(h)) <= 3) continue;
     if (removal_cost(h) < 1e9) map_.remove_edge(h);
-  }
-}
-
-void FaceRepair::remove_superfluous_edges() {
-  struct Candidate {
-    int gain;
-    double cost;
-    Index h;
-    bool operator<(const Candidate& o) const {
-      return std::tie(o.gain, cost, h) < std::tie(gain, o.cost, o.h);
-    }
-  };
-  for (bool again = true; again;) {
-    again = false;
-    std::vector<Candidate> candidates;
-    for (Index h = 0; h < map_.halfedges(); h += 2) {
-      const int gain = removal_gain(h);
-      if (gain <= 0) continue;
-      const double cost = removal_cost(h);
-      if (cost < 1e9) candidates.push_back({gain, cost, h});
-    }
-    std::sort(candidates.begin(), candidates.end());
-    for (const Candidate& c : candidates) {
-      if (removal_gain(c.h) != c.gain || removal_cost(c.h) >= 1e9) continue;
-      map_.remove_edge(c.h);
-      again = true;
-    }
   }
 }
 

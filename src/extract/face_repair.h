@@ -45,10 +45,14 @@ class FaceRepair {
   /// (`jumps`: one an edge), the best squares first.
   void remove_diagonals(std::span<const std::array<int, 2>> jumps);
 
-  /// Quads: removes edges as long as that leaves fewer irregular faces and vertices, the greatest gain
-  /// first: between the halves of a quad, or the long side of a flat triangle, which makes a T-junction
-  /// out of four irregularities.
-  void remove_superfluous_edges();
+  /// Quads: takes edges away, or turns them within the two faces beside them, as long as that leaves
+  /// fewer irregular faces and vertices, the greatest gain first. So pairs of triangles become quads,
+  /// and the long side of a flat triangle makes way for a T-junction.
+  void improve_edges();
+
+  /// Quads: closes faces by merging two opposite corners as long as that leaves fewer irregular
+  /// vertices.
+  void close_quads();
 
   /// Triangles: turns the edge between two of them as long as that leaves fewer irregular vertices.
   void flip_edges();
@@ -65,8 +69,23 @@ class FaceRepair {
   double angle(Index v, Index from, Index to) const;
   double polygon_cost(std::span<const Index> corners) const;
   bool same_orbit(Index a, Index b) const;
-  int removal_gain(Index h) const;
+  struct EdgeChange {
+    int gain = 0;         // by how much the number of irregular faces and vertices falls
+    double cost = 0;      // how irregular the new faces are
+    Index h = no_index;   // of the edge to take away
+    int from = -1, to = -1;  // corners of the union, for an edge in its place; -1: none
+  };
+  EdgeChange best_change(Index h) const;
+  void apply(const EdgeChange& change);
+  /// Whether a vertex is irregular for quads once it has `change` more edges.
+  bool is_irregular(Index vertex, int change) const;
+  /// The halfedges around the two faces of an edge, without it.
+  std::vector<Index> union_halfedges(Index h) const;
+  /// How far from regular the face would be that an edge leaves when it goes.
   double removal_cost(Index h) const;
+  /// By how much the number of irregular vertices falls if the origin of h and the corner opposite to
+  /// it in their quad become one; 0 if they must not.
+  int closing_gain(Index h) const;
   int flip_gain(Index h) const;
   bool split_once(Index h);
   double triangle_quality(Index a, Index b, Index c) const;

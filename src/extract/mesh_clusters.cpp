@@ -168,6 +168,30 @@ class Collapse {
   LinkCondition link_;
 };
 
+/// Members of different clusters that are one vertex of the surface.
+std::vector<CollapsedMesh::Meeting> find_meetings(std::span<const Index> sources,
+                                                  std::span<const Index> cluster,
+                                                  std::size_t surface_vertices) {
+  std::vector<Index> first(surface_vertices, no_index);  // member
+  std::vector<std::array<Index, 2>> pairs;
+  for (Index m = 0; m < sources.size(); ++m) {
+    Index& other = first[sources[m]];
+    if (other == no_index) {
+      other = m;
+    } else if (cluster[other] != cluster[m]) {
+      pairs.push_back({std::min(cluster[other], cluster[m]), std::max(cluster[other], cluster[m])});
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  std::vector<CollapsedMesh::Meeting> meetings;
+  for (std::size_t k = 0; k < pairs.size();) {
+    const std::size_t start = k;
+    while (k < pairs.size() && pairs[k] == pairs[start]) ++k;
+    meetings.push_back({pairs[start][0], pairs[start][1], static_cast<Index>(k - start)});
+  }
+  return meetings;
+}
+
 CollapsedMesh Collapse::result() && {
   const auto vertices = static_cast<Index>(map_.vertices());
   const PolygonMap::Renumbering rank = map_.compact();
@@ -188,7 +212,9 @@ CollapsedMesh Collapse::result() && {
   }
   Clusters clusters =
       average_clusters(graph_, position_, sources_, cluster, rim_, rank.vertex_count);
-  return {std::move(map_), std::move(clusters), std::move(holes), std::move(jumps)};
+  auto meetings = find_meetings(sources_, cluster, graph_.size());
+  return {std::move(map_), std::move(clusters), std::move(holes), std::move(meetings),
+          std::move(jumps)};
 }
 
 }  // namespace

@@ -10,6 +10,11 @@ struct CollapsedMesh {
   PolygonMap map;                   // triangles
   Clusters clusters;                // of the vertices of `map` (edges and border left empty)
   std::vector<std::uint8_t> holes;  // for each halfedge of `map`, whether it lies outside
+  /// Pairs of clusters that share a vertex of the surface, at which it was cut, with how many.
+  struct Meeting {
+    Index a, b, count;
+  };
+  std::vector<Meeting> meetings;
   std::vector<std::array<int, 2>> jumps;  // of each edge, in the frame of its even halfedge's origin
 };
 

@@ -90,7 +90,7 @@ Rail attach_to_border(const Extraction& extraction, const Mesh& surface,
   Rail rail;
   rail.seed.assign(mesh.positions.size(), no_index);
   rail.fixed.assign(mesh.positions.size(), 0);
-  const auto edges = border_edges(mesh);
+  const auto edges = rim_edges(mesh);
   float mean = 0;
   for (const auto& [a, b] : edges) {
     rail.fixed[a] = rail.fixed[b] = 1;  // without a border of the input nearby they stay
@@ -135,7 +135,7 @@ void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
   Mesh& mesh = extraction.mesh;
   std::vector<Index>& seeds = extraction.nodes;
   const Projector projector(surface, graph);
-  const BorderLine border(surface, border_edges(surface));
+  const BorderLine border(surface, rim_edges(surface, context));
   Rail rail = attach_to_border(extraction, surface, border);
   const VertexFaces around = vertex_faces(mesh);
 

@@ -3,11 +3,17 @@
 #include <array>
 #include <vector>
 
+#include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
 
 namespace meshgrain {
 
 /// The edges that only one face uses, as the vertices at their ends in the order of that face.
-std::vector<std::array<Index, 2>> border_edges(const Mesh& mesh);
+std::vector<std::array<Index, 2>> border_edges(const Mesh& mesh,
+                                               const Context& context = Context(1));
+
+/// The edges that are not simply between two faces of opposite direction: the border, and where more
+/// than two faces or sides that disagree meet. Each once, the smaller index first.
+std::vector<std::array<Index, 2>> rim_edges(const Mesh& mesh, const Context& context = Context(1));
 
 }  // namespace meshgrain

@@ -1,0 +1,155 @@
+#include <algorithm>
+#include <tuple>
+
+#include "extract/face_repair.h"
+
+namespace meshgrain {
+namespace {
+
+/// A search among the local changes of connectivity for those that leave fewer irregular faces and
+/// vertices. An inner vertex of a quad mesh is regular with four edges, one of the border with three.
+int regular_valence(bool on_border) { return on_border ? 3 : 4; }
+
+bool has_repeats(std::vector<Index> values) {
+  std::sort(values.begin(), values.end());
+  return std::adjacent_find(values.begin(), values.end()) != values.end();
+}
+
+}  // namespace
+
+bool FaceRepair::is_irregular(Index vertex, int change) const {
+  return static_cast<int>(map_.valence(vertex)) + change !=
+         regular_valence(clusters_.on_border[vertex]);
+}
+
+std::vector<Index> FaceRepair::union_halfedges(Index h) const {
+  const Index t = PolygonMap::twin(h);
+  std::vector<Index> halfedges;
+  for (Index g = map_.next(h); g != h; g = map_.next(g)) halfedges.push_back(g);
+  for (Index g = map_.next(t); g != t; g = map_.next(g)) halfedges.push_back(g);
+  return halfedges;
+}
+
+FaceRepair::EdgeChange FaceRepair::best_change(Index h) const {
+  EdgeChange best;
+  const Index t = PolygonMap::twin(h);
+  if (map_.removed(h) || hole_[h] || hole_[t]) return best;
+  const auto a = static_cast<int>(map_.degree(h)), b = static_cast<int>(map_.degree(t));
+  const int n = a + b - 2;
+  if (n > 7) return best;
+  const Index ends[2] = {map_.origin(h), map_.origin(t)};
+  for (const Index v : ends) {
+    if (static_cast<int>(map_.valence(v)) < regular_valence(clusters_.on_border[v])) return best;
+  }
+  std::vector<Index> corners = union_halfedges(h);
+  for (Index& corner : corners) corner = map_.origin(corner);
+  if (has_repeats(corners)) return best;
+
+  const auto loses = [&](Index v) { return v == ends[0] || v == ends[1]; };
+  int gain_of_removal = (a != 4) + (b != 4);
+  for (const Index v : ends) gain_of_removal += is_irregular(v, 0) - is_irregular(v, -1);
+  const auto keep_better = [&](int gain, double cost, int from, int to) {
+    if (cost >= 1e9) return;
+    if (gain > best.gain || (gain == best.gain && gain > 0 && cost < best.cost)) {
+      best = {gain, cost, h, from, to};
+    }
+  };
+  if (n <= 5 && gain_of_removal - (n != 4) > 0) {
+    keep_better(gain_of_removal - (n != 4), polygon_cost(corners), -1, -1);
+  }
+  // Or another edge in its place: one that cuts off a quad.
+  for (int from = 0; from < n; ++from) {
+    for (int to = from + 2; to <= std::min(n - 1, from + n - 2); ++to) {
+      const int left = to - from + 1, right = n - left + 2;
+      if (left != 4 && right != 4) continue;
+      int gain = gain_of_removal - (left != 4) - (right != 4);
+      for (const Index v : {corners[from], corners[to]}) {
+        const int before = loses(v) ? -1 : 0;
+        gain += is_irregular(v, before) - is_irregular(v, before + 1);
+      }
+      if (gain <= 0 || gain < best.gain || map_.adjacent(corners[from], corners[to])) continue;
+      std::vector<Index> face(corners.begin() + from, corners.begin() + to + 1);
+      double cost = polygon_cost(face);
+      face.assign(corners.begin() + to, corners.end());
+      face.insert(face.end(), corners.begin(), corners.begin() + from + 1);
+      cost += polygon_cost(face);
+      keep_better(gain, cost, from, to);
+    }
+  }
+  return best;
+}
+
+void FaceRepair::apply(const EdgeChange& change) {
+  const std::vector<Index> halfedges = union_halfedges(change.h);
+  map_.remove_edge(change.h);
+  if (change.from < 0) return;
+  map_.add_edge(halfedges[change.from], halfedges[change.to]);
+  hole_.resize(map_.halfedges(), 0);
+}
+
+void FaceRepair::improve_edges() {
+  // Every change lowers a count, so this ends by itself.
+  for (;;) {
+    std::vector<EdgeChange> changes;
+    for (Index h = 0; h < map_.halfedges(); h += 2) {
+      if (const EdgeChange change = best_change(h); change.gain > 0) changes.push_back(change);
+    }
+    if (changes.empty()) return;
+    std::sort(changes.begin(), changes.end(), [](const EdgeChange& x, const EdgeChange& y) {
+      return std::tie(y.gain, x.cost, x.h) < std::tie(x.gain, y.cost, y.h);
+    });
+    bool applied = false;
+    for (const EdgeChange& change : changes) {
+      // What lies beside it may have changed since; the first is always as it was.
+      const EdgeChange now = best_change(change.h);
+      if (now.gain < change.gain) continue;
+      apply(now);
+      applied = true;
+    }
+    if (!applied) return;
+  }
+}
+
+int FaceRepair::closing_gain(Index h) const {
+  if (map_.removed(h) || hole_[h] || map_.degree(h) != 4) return 0;
+  const Index across = map_.next(map_.next(h));
+  const Index a = map_.origin(h), c = map_.origin(across);
+  const Index sides[2] = {map_.origin(map_.next(h)), map_.origin(map_.next(across))};
+  if (clusters_.on_border[a] || clusters_.on_border[c]) return 0;
+  // The two may have nothing in common but this face, or other faces would come to touch themselves.
+  std::vector<Index> near;
+  const auto for_faces = [&](Index start, const auto& body) {
+    for (Index g = map_.around(start); g != start; g = map_.around(g)) {
+      for (Index k = map_.next(g); k != g; k = map_.next(k)) body(map_.origin(k));
+    }
+  };
+  for_faces(h, [&](Index v) { near.push_back(v); });
+  std::sort(near.begin(), near.end());
+  bool apart = true;
+  for_faces(across, [&](Index v) {
+    const bool side = v == sides[0] || v == sides[1];
+    apart = apart && (side || !std::binary_search(near.begin(), near.end(), v));
+  });
+  if (!apart) return 0;
+  const auto valence = static_cast<int>(map_.valence(a) + map_.valence(c)) - 2;
+  int gain = is_irregular(a, 0) + is_irregular(c, 0) - (valence != 4);
+  for (const Index v : sides) {
+    if (static_cast<int>(map_.valence(v)) < regular_valence(clusters_.on_border[v])) return 0;
+    gain += is_irregular(v, 0) - is_irregular(v, -1);
+  }
+  return gain;
+}
+
+void FaceRepair::close_quads() {
+  for (Index h = 0; h < map_.halfedges(); ++h) {
+    if (closing_gain(h) <= 0) continue;
+    const Index across = map_.next(map_.next(h));
+    const Index a = map_.origin(h), c = map_.origin(across);
+    clusters_.positions[a] = 0.5f * (clusters_.positions[a] + clusters_.positions[c]);
+    const Index chord = map_.add_edge(h, across);
+    hole_.resize(map_.halfedges(), 0);
+    contract(chord);
+  }
+}
+
+}  // namespace meshgrain
