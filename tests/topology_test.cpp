@@ -1,0 +1,60 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "meshgrain/remesh.h"
+#include "meshgrain/shapes.h"
+#include "meshgrain/statistics.h"
+
+namespace meshgrain {
+namespace {
+
+/// What the README guarantees of manifold, orientable input: the same pieces, borders and genus,
+/// manifold and consistently oriented, no isolated vertices, and only the faces asked for. Also at
+/// targets far too coarse for the shape.
+TEST(Topology, IsThatOfTheInput) {
+  for (const std::string& name : sample_names()) {
+    const Mesh input = sample_shape(name, 0.5);
+    const MeshStatistics before = mesh_statistics(input);
+    for (const OutputFaces faces :
+         {OutputFaces::quads, OutputFaces::quad_dominant, OutputFaces::triangles}) {
+      for (const std::size_t count : {40, 800}) {
+        SCOPED_TRACE(name + " " + std::to_string(static_cast<int>(faces)) + " " +
+                     std::to_string(count));
+        RemeshOptions options;
+        options.faces = faces;
+        options.face_count = count;
+        const Mesh result = remesh(input, options).mesh;
+        const MeshStatistics after = mesh_statistics(result);
+        EXPECT_EQ(after.components, before.components);
+        EXPECT_EQ(after.boundary_loops, before.boundary_loops);
+        EXPECT_EQ(after.euler, before.euler);
+        EXPECT_EQ(after.non_manifold_edges, 0u);
+        EXPECT_EQ(after.non_manifold_vertices, 0u);
+        EXPECT_EQ(after.isolated_vertices, 0u);
+        if (faces == OutputFaces::quads) {
+          EXPECT_EQ(after.quads, after.faces);
+        }
+        if (faces == OutputFaces::triangles) {
+          EXPECT_EQ(after.triangles, after.faces);
+        }
+        // Consistently oriented: no two faces run along an edge the same way.
+        std::vector<std::pair<Index, Index>> halfedges;
+        for (std::size_t f = 0; f < result.faces.size(); ++f) {
+          const auto face = result.faces[f];
+          for (std::size_t k = 0; k < face.size(); ++k) {
+            halfedges.emplace_back(face[k], face[(k + 1) % face.size()]);
+          }
+        }
+        std::ranges::sort(halfedges);
+        EXPECT_EQ(std::ranges::adjacent_find(halfedges), halfedges.end());
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace meshgrain
