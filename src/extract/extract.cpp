@@ -93,6 +93,18 @@ Extraction collect_faces(const PolygonMap& map, const FaceRepair& repair, const 
   return result;
 }
 
+/// The local changes that leave fewer irregular faces and vertices.
+void make_regular(FaceRepair& repair, int posy) {
+  if (posy == 4) {
+    repair.improve_edges();
+    repair.close_quads();
+    repair.improve_edges();
+    repair.remove_doublets();
+  } else {
+    repair.flip_edges();
+  }
+}
+
 /// The paper's way: clusters of the graph, and faces found by walking around them.
 Extraction extract_from_graph(const Graph& graph, const OrientationField& orientation,
                               const PositionField& position, const ExtractOptions& options,
@@ -105,14 +117,7 @@ Extraction extract_from_graph(const Graph& graph, const OrientationField& orient
   repair.find_holes(mark(clusters.edges, clusters.border), clusters.on_border,
                     options.largest_filled_gap);
   repair.split_large();
-  if (position.posy == 4) {
-    repair.improve_edges();
-    repair.close_quads();
-    repair.improve_edges();
-    repair.remove_doublets();
-  } else {
-    repair.flip_edges();
-  }
+  make_regular(repair, position.posy);
   std::vector<Index> vertex;
   Extraction result = collect_faces(map, repair, clusters, vertex);
   drop_fragments(result, graph);
@@ -178,15 +183,8 @@ Extraction extract_from_mesh(const Graph& graph, const OrientationField& orienta
     repair.flip_bad_triangles();
     repair.untangle();
   }
-  if (position.posy == 4) {
-    repair.remove_diagonals(collapsed.jumps);
-    repair.improve_edges();
-    repair.close_quads();
-    repair.improve_edges();
-    repair.remove_doublets();
-  } else {
-    repair.flip_edges();
-  }
+  if (position.posy == 4) repair.remove_diagonals(collapsed.jumps);
+  make_regular(repair, position.posy);
   std::vector<Index> vertex;
   Extraction result = collect_faces(collapsed.map, repair, collapsed.clusters, vertex);
   if (!options.manifold) join_pieces(result, collapsed.meetings, vertex, context);

@@ -1,5 +1,5 @@
 #include "field/constraints.h"
-#include "field/multiresolution.h"
+#include "field/kernel_solver.h"
 #include "field/orientation_kernel.h"
 #include "field/with_symmetry.h"
 #include "meshgrain/fields.h"
@@ -8,26 +8,18 @@ namespace meshgrain {
 namespace {
 
 template <int N, OrientationEnergy E>
-class Solver final : public OrientationSolver {
+class Solver final : public KernelSolver<OrientationSolver, OrientationKernel<N, E>> {
   using Kernel = OrientationKernel<N, E>;
 
  public:
   Solver(const Hierarchy& hierarchy, const OrientationOptions& options,
          std::span<const OrientationConstraint> constraints)
-      : hierarchy_(hierarchy),
-        constraints_(spread_constraints(hierarchy, N, constraints)),
-        kernels_(make_kernels()),
-        iteration_(hierarchy, options, kernels_, energies_) {}
-
-  bool step(const Context& context) override { return iteration_.step(context); }
-  int level() const override { return iteration_.level(); }
-  double progress() const override { return iteration_.progress(); }
-  void restart(std::span<const Index> region) override { iteration_.restart(region); }
-  void freeze_integers() override { iteration_.freeze_integers(Context(1)); }
-  double energy(const Context& context) const override { return iteration_.energy(context); }
+      : hierarchy_(hierarchy), constraints_(spread_constraints(hierarchy, N, constraints)) {
+    this->begin(hierarchy, options, make_kernels());
+  }
 
   OrientationField field() const override {
-    OrientationField field{N, iteration_.values()};
+    OrientationField field{N, this->values()};
     // Only the convex energy leaves the length free. Values that are unit stay as they are, to the
     // last bit, so that field() gives what set_field() took.
     for (Vec3& d : field.directions) {
@@ -37,11 +29,11 @@ class Solver final : public OrientationSolver {
     return field;
   }
 
-  void set_field(const OrientationField& field) override { iteration_.set_values(field.directions); }
+  void set_field(const OrientationField& field) override { this->set_values(field.directions); }
 
   void set_constraints(std::span<const OrientationConstraint> constraints) override {
     constraints_ = spread_constraints(hierarchy_, N, constraints);
-    kernels_ = make_kernels();
+    this->replace_kernels(make_kernels());
   }
 
  private:
@@ -55,8 +47,6 @@ class Solver final : public OrientationSolver {
 
   const Hierarchy& hierarchy_;
   std::vector<DirectionConstraints> constraints_;
-  std::vector<Kernel> kernels_;
-  Multiresolution<Kernel> iteration_;
 };
 
 }  // namespace

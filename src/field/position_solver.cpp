@@ -1,7 +1,7 @@
 #include <Eigen/Geometry>
 
 #include "field/constraints.h"
-#include "field/multiresolution.h"
+#include "field/kernel_solver.h"
 #include "field/position_kernel.h"
 #include "field/running_share.h"
 #include "field/with_symmetry.h"
@@ -43,7 +43,7 @@ std::vector<LatticeFrame> restrict_frames(const Hierarchy& hierarchy,
 }
 
 template <int S, PositionEnergy E>
-class Solver final : public PositionSolver {
+class Solver final : public KernelSolver<PositionSolver, PositionKernel<S, E>> {
   using Kernel = PositionKernel<S, E>;
 
  public:
@@ -51,23 +51,16 @@ class Solver final : public PositionSolver {
          const PositionOptions& options, std::span<const PositionConstraint> constraints)
       : hierarchy_(hierarchy),
         frames_(std::move(frames)),
-        constraints_(spread_constraints(hierarchy, constraints)),
-        kernels_(make_kernels()),
-        iteration_(hierarchy, options, kernels_, energies_) {}
+        constraints_(spread_constraints(hierarchy, constraints)) {
+    this->begin(hierarchy, options, make_kernels());
+  }
 
-  bool step(const Context& context) override { return iteration_.step(context); }
-  int level() const override { return iteration_.level(); }
-  double progress() const override { return iteration_.progress(); }
-  void restart(std::span<const Index> region) override { iteration_.restart(region); }
-  void freeze_integers() override { iteration_.freeze_integers(Context(1)); }
-  double energy(const Context& context) const override { return iteration_.energy(context); }
-
-  PositionField field() const override { return {S, frames_[0].edge_length, iteration_.values()}; }
-  void set_field(const PositionField& field) override { iteration_.set_values(field.points); }
+  PositionField field() const override { return {S, frames_[0].edge_length, this->values()}; }
+  void set_field(const PositionField& field) override { this->set_values(field.points); }
 
   void set_constraints(std::span<const PositionConstraint> constraints) override {
     constraints_ = spread_constraints(hierarchy_, constraints);
-    kernels_ = make_kernels();
+    this->replace_kernels(make_kernels());
   }
 
  private:
@@ -85,8 +78,6 @@ class Solver final : public PositionSolver {
   const Hierarchy& hierarchy_;
   std::vector<LatticeFrame> frames_;
   std::vector<LineConstraints> constraints_;
-  std::vector<Kernel> kernels_;
-  Multiresolution<Kernel> iteration_;
 };
 
 }  // namespace

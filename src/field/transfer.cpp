@@ -1,47 +1,24 @@
 #include "field/transfer.h"
 
-#include <nanoflann.hpp>
-
 #include "field/posy.h"
 #include "field/rosy.h"
 #include "field/with_symmetry.h"
+#include "graph/nearest_neighbors.h"
 #include "meshgrain/error.h"
 
 namespace meshgrain {
 namespace {
 
-struct Points {
-  std::vector<Vec3> points;
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return points[i][static_cast<Eigen::Index>(axis)];
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-
 /// For each node, the nearest vertex of the fields' surface.
 std::vector<Index> nearest_vertices(const Fields& fields, const Graph& graph, const Frame& frame,
                                     const Context& context) {
-  Points cloud;
+  std::vector<Vec3> points;
+  points.reserve(fields.surface.positions.size());
   for (const Vec3& p : fields.surface.positions) {
-    cloud.points.push_back(
-        frame.inside(p.cast<double>() + fields.surface.origin).cast<float>());
+    points.push_back(frame.inside(p.cast<double>() + fields.surface.origin).cast<float>());
   }
-  if (cloud.points.empty()) throw Error("the given fields have no values");
-  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Points>,
-                                                   Points, 3, Index>;
-  const Tree tree(3, cloud);
-  std::vector<Index> result(graph.size());
-  context.for_ranges(graph.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      float distance = 0;
-      tree.knnSearch(graph.positions[i].data(), 1, &result[i], &distance);
-    }
-  });
-  return result;
+  if (points.empty()) throw Error("the given fields have no values");
+  return nearest_points(points, graph.positions, context);
 }
 
 }  // namespace

@@ -104,4 +104,18 @@ Neighborhoods nearest_neighbors(std::span<const Vec3> points, std::size_t k,
   return result;
 }
 
+std::vector<Index> nearest_points(std::span<const Vec3> points, std::span<const Vec3> queries,
+                                  const Context& context) {
+  const Points set{points};
+  const Tree tree(3, set);
+  std::vector<Index> result(queries.size());
+  context.for_ranges(queries.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      float distance = 0;
+      tree.knnSearch(queries[i].data(), 1, &result[i], &distance);
+    }
+  });
+  return result;
+}
+
 }  // namespace meshgrain

@@ -28,4 +28,8 @@ struct Neighborhoods {
 Neighborhoods nearest_neighbors(std::span<const Vec3> points, std::size_t k,
                                 const Context& context = Context());
 
+/// For each query the index of the nearest of `points`, of which there must be one at least.
+std::vector<Index> nearest_points(std::span<const Vec3> points, std::span<const Vec3> queries,
+                                  const Context& context = Context());
+
 }  // namespace meshgrain

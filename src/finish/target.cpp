@@ -1,0 +1,50 @@
+#include "finish/target.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace meshgrain {
+
+int posy_of(OutputFaces faces) {
+  return faces == OutputFaces::triangles || faces == OutputFaces::hexagons ? 6 : 4;
+}
+
+Target::Target(const RemeshOptions& options, std::size_t input_vertices, double scale) {
+  // A cell of the triangular lattice is two triangles, or one vertex; of its dual, two vertices or one
+  // hexagon. A pure quad mesh has four quads, and four vertices, for each of the lattice's before its
+  // split.
+  if (posy_of(options.faces) == 6) cell_area_ = std::sqrt(3.0) / 2;
+  const bool split = options.faces == OutputFaces::quads;
+  const bool dual = options.faces == OutputFaces::hexagons;
+  const double faces_per_cell = split ? 4 : options.faces == OutputFaces::triangles ? 2 : 1;
+  const double vertices_per_cell = split ? 4 : dual ? 2 : 1;
+  if (options.edge_length > 0) {
+    // The edge of a hexagon is the triangles' divided by the root of three.
+    length_ = options.edge_length * (split ? 2 : dual ? std::sqrt(3.0) : 1) / scale;
+  } else if (options.face_count > 0) {
+    faces_ = static_cast<double>(options.face_count);
+    cells_ = faces_ / faces_per_cell;
+  } else {
+    const auto input = static_cast<double>(input_vertices);
+    vertices_ = options.vertex_count > 0 ? static_cast<double>(options.vertex_count)
+                                         : std::max(1.0, input / 16);
+    cells_ = vertices_ / vertices_per_cell;
+  }
+}
+
+double Target::edge_length(double area) const {
+  return cells_ > 0 ? std::sqrt(area / (cells_ * cell_area_)) : length_;
+}
+
+EdgeLength Target::edge_lengths(const Graph& graph, const EdgeLength& relative) const {
+  return scaled(relative,
+                cells_ > 0 ? length_for_count(graph, relative, cell_area_, cells_) : length_);
+}
+
+double Target::count_ratio(const Mesh& mesh) const {
+  if (faces_ > 0) return static_cast<double>(mesh.faces.size()) / faces_;
+  if (vertices_ > 0) return static_cast<double>(mesh.positions.size()) / vertices_;
+  return 1;
+}
+
+}  // namespace meshgrain

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "meshgrain/remesh.h"
+
+namespace meshgrain {
+
+/// The symmetry of the position field that an output needs.
+int posy_of(OutputFaces faces);
+
+/// How fine the lattice of the position field must be for the mesh that is to be written.
+class Target {
+ public:
+  Target() = default;
+  /// `scale`: input units a unit of the surface.
+  Target(const RemeshOptions& options, std::size_t input_vertices, double scale);
+
+  /// The edge length that gives a surface of this area as many lattice cells as are wanted; or the one
+  /// asked for.
+  double edge_length(double area) const;
+
+  /// The edge length at every node of a graph, varying as `relative` does.
+  EdgeLength edge_lengths(const Graph& graph, const EdgeLength& relative) const;
+
+  /// How many faces or vertices a mesh has for one that was asked for; 1 if it went by length.
+  double count_ratio(const Mesh& mesh) const;
+
+ private:
+  double cells_ = 0;      // wanted squares, or pairs of triangles; 0: by length
+  double length_ = 0;     // wanted lattice edge length, if by length
+  double cell_area_ = 1;  // in squared edge lengths
+  double faces_ = 0, vertices_ = 0;  // wanted; 0 if not what was asked for
+};
+
+}  // namespace meshgrain
