@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "field/transfer.h"
-#include "finish/target.h"
 #include "mesh/border.h"
 #include "mesh/frame.h"
 #include "meshgrain/clean.h"
@@ -17,7 +16,8 @@
 #include "meshgrain/singularities.h"
 #include "meshgrain/surface.h"
 #include "meshgrain/triangulate.h"
-#include "util/stages.h"
+#include "remesh/stages.h"
+#include "remesh/target.h"
 
 namespace meshgrain {
 namespace {
@@ -149,8 +149,8 @@ class Pipeline {
     });
   }
 
-  /// Positions and the mesh; where a count was asked for and missed, again with edges that much longer
-  /// or shorter, and the nearest is kept.
+  /// Positions and the mesh; where a count was asked for and missed, again with edges that much
+  /// longer or shorter, and the nearest is kept.
   void position_and_extract() {
     constexpr int attempts = 3;
     constexpr double tolerance = 0.03;

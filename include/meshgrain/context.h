@@ -23,7 +23,8 @@ class Context {
   /// that is done (0 to 1).
   std::function<void(std::string_view stage, double fraction)> on_progress;
 
-  /// Asks the running call to stop: it throws Cancelled at its next check. Any thread may call this.
+  /// Asks the running call to stop: it throws Cancelled at its next check. Any thread may call
+  /// this.
   void cancel() { cancelled_.store(true, std::memory_order_relaxed); }
   void reset() { cancelled_.store(false, std::memory_order_relaxed); }
 

@@ -11,17 +11,17 @@ namespace meshgrain {
 struct ExtractOptions {
   /// How the integer jumps across edges are found: that of the position field's solver.
   PositionEnergy energy = PositionEnergy::extrinsic;
-  /// The triangle mesh whose vertices are the graph's nodes, if there is one: its own edges are then
-  /// collapsed, and the output has its components, borders and genus. Without it the paper's way is
-  /// taken, which needs nothing but the graph; the options below are for that.
+  /// The triangle mesh whose vertices are the graph's nodes, if there is one: its own edges are
+  /// then collapsed, and the output has its components, borders and genus. Without it the paper's
+  /// way is taken, which needs nothing but the graph; the options below are for that.
   const Mesh* surface = nullptr;
   /// Over a mesh: leave the pieces apart that non-manifold edges and vertices of `surface` join.
   bool manifold = false;
-  /// Edges of the graph that lie on the border of the surface: where the output is open. Without any,
-  /// gaps that the walk leaves are closed.
+  /// Edges of the graph that lie on the border of the surface: where the output is open. Without
+  /// any, gaps that the walk leaves are closed.
   std::vector<std::array<Index, 2>> border;
-  /// Gaps with more edges than this stay open even away from the border: a point cloud may have holes
-  /// that only it knows of.
+  /// Gaps with more edges than this stay open even away from the border: a point cloud may have
+  /// holes that only it knows of.
   std::size_t largest_filled_gap = 64;
 };
 
@@ -31,8 +31,8 @@ struct Extraction {
 };
 
 /// Reads a mesh off the integer jumps of a position field (section 3.8): quads with some triangles
-/// and pentagons for a 4-PoSy, triangles for a 6-PoSy. The fields may come from anywhere; only their
-/// integers relative to the graph matter.
+/// and pentagons for a 4-PoSy, triangles for a 6-PoSy. The fields may come from anywhere; only
+/// their integers relative to the graph matter.
 Extraction extract_mesh(const Graph& graph, const OrientationField& orientation,
                         const PositionField& position, const ExtractOptions& options = {},
                         const Context& context = Context());

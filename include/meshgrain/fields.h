@@ -61,8 +61,8 @@ struct OrientationConstraint {
   float strength = 1;
 };
 
-/// Pulls a node's lattice towards a line (through `point` along `direction`), or to the point itself
-/// if the direction is zero (section 3.7).
+/// Pulls a node's lattice towards a line (through `point` along `direction`), or to the point
+/// itself if the direction is zero (section 3.7).
 struct PositionConstraint {
   Index node = 0;
   Vec3 point = Vec3::Zero();
@@ -77,7 +77,7 @@ enum class Schedule {
 };
 
 struct SolverOptions {
-  int sweeps = 6;               ///< Gauss-Seidel sweeps on each level (section 3.5).
+  int sweeps = 6;  ///< Gauss-Seidel sweeps on each level (section 3.5).
   Schedule schedule = Schedule::blocks;
   bool multiresolution = true;  ///< false: sweeps on the finest level only (Figure 8).
   std::uint64_t seed = 0;       ///< Of the random start.
@@ -112,8 +112,8 @@ class FieldSolver {
   virtual double progress() const = 0;
 
   /// Starts again, but changes only these nodes: the others keep their values, also on coarser
-  /// levels. For a region whose constraints or whose surface have changed. Call it when the solver is
-  /// done.
+  /// levels. For a region whose constraints or whose surface have changed. Call it when the solver
+  /// is done.
   virtual void restart(std::span<const Index> region) = 0;
 
   /// Holds the integers of all edges of the finest level at what they are now; step() then changes
@@ -168,7 +168,8 @@ class PositionSolver : public FieldSolver {
 };
 
 /// The common case: all sweeps in one call.
-OrientationField solve_orientation(const Hierarchy& hierarchy, const OrientationOptions& options = {},
+OrientationField solve_orientation(const Hierarchy& hierarchy,
+                                   const OrientationOptions& options = {},
                                    std::span<const OrientationConstraint> constraints = {},
                                    const Context& context = Context());
 PositionField solve_position(const Hierarchy& hierarchy, const OrientationField& orientation,

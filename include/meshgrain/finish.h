@@ -15,14 +15,15 @@ void split_into_quads(Extraction& extraction);
 /// of the border are left out.
 void take_dual(Extraction& extraction);
 
-/// Makes every vertex and edge manifold: faces that would be the third on an edge, or run along it the
-/// wrong way, are dropped, and a vertex where several fans of faces meet becomes one a fan. Returns
-/// the number of faces dropped.
+/// Makes every vertex and edge manifold: faces that would be the third on an edge, or run along it
+/// the wrong way, are dropped, and a vertex where several fans of faces meet becomes one a fan.
+/// Returns the number of faces dropped.
 std::size_t make_manifold(Extraction& extraction);
 
 struct SmoothOptions {
   int iterations = 40;
-  /// How strongly faces are drawn to one size, 0 to 1: areas become more even, angles a little less.
+  /// How strongly faces are drawn to one size, 0 to 1: areas become more even, angles a little
+  /// less.
   double evenness = 0.5;
   /// Chains of edges that lie on creases of a mechanical part sharper than this stay on them; < 0:
   /// none do.
@@ -32,8 +33,8 @@ struct SmoothOptions {
 
 /// Evens the faces out: each iteration moves every vertex to the mean of where it would be in the
 /// regular polygons that fit its faces best, and back onto the surface. Border vertices move along
-/// the border, those on creases along the crease, and the ones at corners stay. `surface` is the triangle mesh or point cloud that
-/// `graph` was built on.
+/// the border, those on creases along the crease, and the ones at corners stay. `surface` is the
+/// triangle mesh or point cloud that `graph` was built on.
 void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
             const SmoothOptions& options = {}, const Context& context = Context());
 

@@ -45,8 +45,9 @@ enum class GraphWeights {
 struct GraphOptions {
   GraphNodes nodes = GraphNodes::vertices;
   GraphWeights weights = GraphWeights::uniform;
-  std::size_t neighbors = 10;   ///< K of the nearest neighbours, for point clouds (section 3.1).
-  double crease_degrees = -1;   ///< Dihedral angle that makes crease normals (section 3.5); < 0: none.
+  std::size_t neighbors = 10;  ///< K of the nearest neighbours, for point clouds (section 3.1).
+  double crease_degrees =
+      -1;  ///< Dihedral angle that makes crease normals (section 3.5); < 0: none.
 };
 
 /// The graph of a triangle mesh or of a point cloud (whose normals are estimated if it has none).

@@ -15,9 +15,9 @@ struct Hierarchy {
 };
 
 /// Pairs are taken by the paper's score <n_i, n_j> min(A_i / A_j, A_j / A_i), the best first, by
-/// rounds of mutual proposals: the same pairs as one global sort would give, without the sort. Nodes
-/// whose neighbours are all taken join one of them, so that each level has at most half of the nodes
-/// of the one before (but for nodes without neighbours).
+/// rounds of mutual proposals: the same pairs as one global sort would give, without the sort.
+/// Nodes whose neighbours are all taken join one of them, so that each level has at most half of
+/// the nodes of the one before (but for nodes without neighbours).
 Hierarchy build_hierarchy(Graph graph, const Context& context = Context());
 
 }  // namespace meshgrain

@@ -15,10 +15,10 @@
 namespace meshgrain {
 
 enum class OutputFaces {
-  quads,          ///< Nothing but quads: a quad-dominant mesh of double edge length, subdivided once.
+  quads,  ///< Nothing but quads: a quad-dominant mesh of double edge length, subdivided once.
   quad_dominant,  ///< Quads with some triangles and pentagons.
   triangles,
-  hexagons,       ///< The dual of triangles.
+  hexagons,  ///< The dual of triangles.
 };
 
 struct RemeshOptions {

@@ -13,8 +13,8 @@ struct OrientationSingularity {
 };
 
 /// The triangles around which an orientation field turns (section 3.6). The turn is measured by
-/// parallel transport between the vertices' tangent planes, so that over a closed surface the indices
-/// sum to rosy times its Euler number.
+/// parallel transport between the vertices' tangent planes, so that over a closed surface the
+/// indices sum to rosy times its Euler number.
 std::vector<OrientationSingularity> orientation_singularities(const Mesh& triangles,
                                                               const std::vector<Vec3>& normals,
                                                               const OrientationField& field,

@@ -18,9 +18,9 @@ struct Sizing {
 };
 
 /// Relative edge lengths for the nodes of a graph, evened out so that neighbours differ little; one
-/// value if the sizing is uniform. `edge_length` is the mean that the curvature is measured against,
-/// and `point` is relative to the graph's positions. Throws Error if values are wanted and missing or
-/// not positive.
+/// value if the sizing is uniform. `edge_length` is the mean that the curvature is measured
+/// against, and `point` is relative to the graph's positions. Throws Error if values are wanted and
+/// missing or not positive.
 EdgeLength relative_edge_lengths(const Graph& graph, const Sizing& sizing,
                                  const std::vector<float>& values, double edge_length,
                                  const Context& context = Context());

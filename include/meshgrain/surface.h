@@ -19,8 +19,8 @@ EdgeLengths edge_lengths(const Mesh& mesh);
 void subdivide(Mesh& triangles, double max_length, const Context& context = Context());
 
 /// Puts vertices into the order of a Hilbert curve, and faces into the order of their first vertex,
-/// so that what is near on the surface is near in memory. Returns, for each new vertex, its index in
-/// the mesh that was passed.
+/// so that what is near on the surface is near in memory. Returns, for each new vertex, its index
+/// in the mesh that was passed.
 std::vector<Index> sort_along_curve(Mesh& mesh, const Context& context = Context());
 
 }  // namespace meshgrain

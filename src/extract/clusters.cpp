@@ -110,15 +110,15 @@ void classify_edges(const Graph& graph, const OrientationField& orientation,
   context.run([&] { tbb::parallel_sort(merges); });
 }
 
-/// Shortest first; two clusters that an edge of G' joins stay apart, as the integers there contradict
-/// each other.
+/// Shortest first; two clusters that an edge of G' joins stay apart, as the integers there
+/// contradict each other.
 void merge_clusters(const std::vector<Merge>& merges, const UnitEdges& units, DisjointSets& sets,
                     const Context& context) {
   std::size_t done = 0;
   for (const Merge& merge : merges) {
     if ((done++ & 0xffff) == 0) {
-      context.progress("extraction", 0.2 + 0.6 * static_cast<double>(done) /
-                                               static_cast<double>(merges.size()));
+      context.progress("extraction",
+                       0.2 + 0.6 * static_cast<double>(done) / static_cast<double>(merges.size()));
     }
     Index a = sets.find(merge.i), b = sets.find(merge.j);
     if (a == b) continue;
@@ -153,7 +153,8 @@ Clusters average_clusters(const Graph& graph, const PositionField& position,
     const Index c = cluster_of[m], i = nodes[m];
     if (c == no_index) continue;
     const float beta = position.edge_length[i] / 3;
-    // Never quite zero: a cluster whose members are all far from its lattice point needs a place too.
+    // Never quite zero: a cluster whose members are all far from its lattice point needs a place
+    // too.
     const float alpha = std::max(
         std::exp(-(position.points[i] - graph.positions[i]).squaredNorm() / (beta * beta)), 1e-20f);
     result.positions[c] += alpha * position.points[i];

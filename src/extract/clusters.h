@@ -12,9 +12,9 @@ namespace meshgrain {
 struct Clusters {
   std::vector<Vec3> positions;
   std::vector<Vec3> normals;
-  std::vector<float> cover;                  // area, in units of a lattice cell as large as the mean
-  std::vector<Index> nodes;                  // the member nearest to the position
-  std::vector<std::array<Index, 2>> edges;   // sorted, first < second
+  std::vector<float> cover;                 // area, in units of a lattice cell as large as the mean
+  std::vector<Index> nodes;                 // the member nearest to the position
+  std::vector<std::array<Index, 2>> edges;  // sorted, first < second
   std::vector<std::array<Index, 2>> border;  // those of the edges that lie on the border, sorted
   std::vector<std::uint8_t> on_border;       // whether a cluster has nodes on the border
 };

@@ -60,8 +60,7 @@ class Collapse {
       std::size_t kept = 0, done = 0;
       for (const Candidate& c : candidates) {
         if ((++done & 0xffff) == 0) {
-          context.progress("extraction",
-                           static_cast<double>(done) / static_cast<double>(before));
+          context.progress("extraction", static_cast<double>(done) / static_cast<double>(before));
         }
         if (map_.removed(c.h) || !jumps_[c.h / 2].is_zero()) continue;
         if (link_.holds(map_, holes_, c.h)) {
@@ -115,8 +114,8 @@ class Collapse {
                      position_.edge_length[i])
           .point(t);
     };
-    const Vec3 p = position_.posy == 4 ? point.template operator()<4>()
-                                       : point.template operator()<6>();
+    const Vec3 p =
+        position_.posy == 4 ? point.template operator()<4>() : point.template operator()<6>();
     return (p - position_.points[j]).norm();
   }
 
@@ -141,7 +140,8 @@ class Collapse {
       // Halfedges of the two edges, inside the triangle that vanishes.
       const Jump of_b = map_.origin(from_b) == b ? jump(from_b) : jump(PolygonMap::twin(from_b));
       const Jump of_a = map_.origin(from_a) == a ? jump(from_a) : jump(PolygonMap::twin(from_a));
-      const bool b_better = of_a.t != of_b.t && deviation(a, apex, of_b.t) < deviation(a, apex, of_a.t);
+      const bool b_better =
+          of_a.t != of_b.t && deviation(a, apex, of_b.t) < deviation(a, apex, of_a.t);
       return b_better ? Zip{from_a, from_b} : Zip{from_b, from_a};
     };
     Zip zips[2];

@@ -15,13 +15,14 @@ struct CollapsedMesh {
     Index a, b, count;
   };
   std::vector<Meeting> meetings;
-  std::vector<std::array<int, 2>> jumps;  // of each edge, in the frame of its even halfedge's origin
+  std::vector<std::array<int, 2>>
+      jumps;  // of each edge, in the frame of its even halfedge's origin
 };
 
 /// Collapses the edges of the mesh itself, shortest first, where their jump is zero and the link
-/// condition holds (Dey et al. 1999): the result has the components, borders and genus of the input,
-/// whatever the fields are. What is not manifold is cut first. `surface` is the triangle mesh whose
-/// vertices are the graph's nodes.
+/// condition holds (Dey et al. 1999): the result has the components, borders and genus of the
+/// input, whatever the fields are. What is not manifold is cut first. `surface` is the triangle
+/// mesh whose vertices are the graph's nodes.
 CollapsedMesh collapse_mesh(const Mesh& surface, const Graph& graph,
                             const OrientationField& orientation, const PositionField& position,
                             PositionEnergy energy, const Context& context);

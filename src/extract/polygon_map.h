@@ -10,8 +10,8 @@
 namespace meshgrain {
 
 /// A combinatorial map: a graph with a cyclic order of the edges around each vertex, as halfedges.
-/// The walks along `next` ("orbits") are its faces, so that whatever the edges are, every edge has a
-/// face on either side. Halfedges h and h ^ 1 are the two sides of an edge.
+/// The walks along `next` ("orbits") are its faces, so that whatever the edges are, every edge has
+/// a face on either side. Halfedges h and h ^ 1 are the two sides of an edge.
 class PolygonMap {
  public:
   /// The edges around a vertex are ordered by angle in its tangent plane.
@@ -49,10 +49,11 @@ class PolygonMap {
   /// Adds an edge from the origin of `a` to the origin of `b`, two halfedges of one orbit. Returns
   /// the halfedge from the origin of `a`, in whose orbit `b` lies.
   Index add_edge(Index a, Index b);
-  /// Merges the target of `h` into its origin; the edge vanishes, and the orbits on its sides lose it.
+  /// Merges the target of `h` into its origin; the edge vanishes, and the orbits on its sides lose
+  /// it.
   void contract_edge(Index h);
-  /// Cuts the vertex that two halfedges leave in two: the edges from `a` clockwise up to `b` go to a
-  /// new vertex, which is returned. If `a` and `b` were in one orbit it becomes two, else theirs
+  /// Cuts the vertex that two halfedges leave in two: the edges from `a` clockwise up to `b` go to
+  /// a new vertex, which is returned. If `a` and `b` were in one orbit it becomes two, else theirs
   /// become one.
   Index split_vertex(Index a, Index b);
   /// Drops removed edges and vertices without any, and numbers the rest anew, in their order.

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdlib>
 #include <tuple>
 
 #include "extract/face_repair.h"
@@ -6,9 +7,10 @@
 namespace meshgrain {
 namespace {
 
-/// A search among the local changes of connectivity for those that leave fewer irregular faces and
-/// vertices. An inner vertex of a quad mesh is regular with four edges, one of the border with three.
-int regular_valence(bool on_border) { return on_border ? 3 : 4; }
+/// An inner vertex of a quad mesh is regular with four edges, one of the border with three.
+int regular_valence(bool on_border) {
+  return on_border ? 3 : 4;
+}
 
 bool has_repeats(std::vector<Index> values) {
   std::sort(values.begin(), values.end());
@@ -16,6 +18,53 @@ bool has_repeats(std::vector<Index> values) {
 }
 
 }  // namespace
+
+void FaceRepair::remove_doublets() {
+  for (bool again = true; again;) {
+    again = false;
+    for (Index v = 0; v < clusters_.positions.size(); ++v) {
+      const Index h = map_.leaving(v);
+      if (h == no_index || map_.valence(v) != 2) continue;
+      const Index g = map_.around(h);
+      if (hole_[h] || hole_[g]) continue;
+      // The faces must share nothing but the two edges, or what they become would touch itself.
+      std::vector<Index> merged;
+      for (Index k = map_.next(h); k != map_.prev(h); k = map_.next(k))
+        merged.push_back(map_.target(k));
+      for (Index k = map_.next(g); k != map_.prev(g); k = map_.next(k))
+        merged.push_back(map_.target(k));
+      if (merged.size() < 3 || has_repeats(merged)) continue;
+      // Both ends lose an edge.
+      if (map_.valence(map_.target(h)) <= 3 || map_.valence(map_.target(g)) <= 3) continue;
+      map_.remove_edge(h);
+      map_.remove_edge(g);
+      again = true;
+    }
+  }
+}
+
+double FaceRepair::removal_cost(Index h) const {
+  std::vector<Index> corners = union_halfedges(h);
+  for (Index& corner : corners) corner = map_.origin(corner);
+  return has_repeats(corners) ? 1e30 : polygon_cost(corners);
+}
+
+void FaceRepair::remove_diagonals(std::span<const std::array<int, 2>> jumps) {
+  std::vector<std::pair<double, Index>> candidates;
+  for (Index h = 0; h < 2 * jumps.size(); h += 2) {
+    const auto& t = jumps[h / 2];
+    if (std::abs(t[0]) != 1 || std::abs(t[1]) != 1) continue;
+    if (map_.removed(h) || hole_[h] || hole_[h + 1]) continue;
+    const double cost = removal_cost(h);
+    if (cost < 1e9) candidates.emplace_back(cost, h);
+  }
+  std::sort(candidates.begin(), candidates.end());
+  for (const auto& [cost, h] : candidates) {
+    if (map_.degree(h) != 3 || map_.degree(h + 1) != 3) continue;
+    if (map_.valence(map_.origin(h)) <= 3 || map_.valence(map_.target(h)) <= 3) continue;
+    if (removal_cost(h) < 1e9) map_.remove_edge(h);
+  }
+}
 
 bool FaceRepair::is_irregular(Index vertex, int change) const {
   return static_cast<int>(map_.valence(vertex)) + change !=
@@ -116,7 +165,8 @@ int FaceRepair::closing_gain(Index h) const {
   const Index a = map_.origin(h), c = map_.origin(across);
   const Index sides[2] = {map_.origin(map_.next(h)), map_.origin(map_.next(across))};
   if (clusters_.on_border[a] || clusters_.on_border[c]) return 0;
-  // The two may have nothing in common but this face, or other faces would come to touch themselves.
+  // The two may have nothing in common but this face, or other faces would come to touch
+  // themselves.
   std::vector<Index> near;
   const auto for_faces = [&](Index start, const auto& body) {
     for (Index g = map_.around(start); g != start; g = map_.around(g)) {

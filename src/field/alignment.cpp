@@ -57,8 +57,8 @@ std::vector<OrientationConstraint> curvature_constraints(const Graph& graph, flo
                                                  graph.normals, context, 1);
   for (Index i = 0; i < graph.size(); ++i) {
     // How much more the normal turns along one principal direction than along the other.
-    const float bend = std::fabs(std::fabs(curvature.kmax[i]) - std::fabs(curvature.kmin[i])) *
-                       edge_length;
+    const float bend =
+        std::fabs(std::fabs(curvature.kmax[i]) - std::fabs(curvature.kmin[i])) * edge_length;
     const float degrees = bend * 180 / std::numbers::pi_v<float>;
     if (alignment.hard_degrees > 0 && degrees >= alignment.hard_degrees) {
       result.push_back({i, curvature.direction[i], 1});

@@ -6,8 +6,9 @@
 namespace meshgrain {
 namespace {
 
-/// Where a node of the finer level adds to what its parent has already, the first child's part stays
-/// as it is: half of nothing must not weaken a constraint, or it would fade from level to level.
+/// Where a node of the finer level adds to what its parent has already, the first child's part
+/// stays as it is: half of nothing must not weaken a constraint, or it would fade from level to
+/// level.
 template <typename Level, typename Add>
 void merge_up(const Hierarchy& hierarchy, std::vector<Level>& levels, const Add& add) {
   for (std::size_t l = 0; l + 1 < levels.size(); ++l) {
@@ -90,8 +91,7 @@ std::vector<LineConstraints> spread_constraints(const Hierarchy& hierarchy,
              // Two lines that run alike share their mean; a point, or the stronger, wins otherwise.
              const float cosine = coarse.directions[k].dot(fine.directions[i]);
              if (std::fabs(cosine) > 0.5f) {
-               const float share =
-                   coarse.strengths[k] / (coarse.strengths[k] + fine.strengths[i]);
+               const float share = coarse.strengths[k] / (coarse.strengths[k] + fine.strengths[i]);
                coarse.points[k] = share * coarse.points[k] + (1 - share) * fine.points[i];
                const Vec3 similar = cosine < 0 ? Vec3(-fine.directions[i]) : fine.directions[i];
                coarse.directions[k] =

@@ -28,8 +28,8 @@ class KernelSolver : public Solver {
   void begin(const Hierarchy& hierarchy, const SolverOptions& options,
              std::vector<Kernel> kernels) {
     kernels_ = std::move(kernels);
-    iteration_ = std::make_unique<Multiresolution<Kernel>>(hierarchy, options, kernels_,
-                                                           this->energies_);
+    iteration_ =
+        std::make_unique<Multiresolution<Kernel>>(hierarchy, options, kernels_, this->energies_);
   }
 
   /// The same data in other places: after a change of constraints.

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "field/schedule.h"
 #include "field/running_share.h"
+#include "field/schedule.h"
 #include "meshgrain/fields.h"
 #include "util/hash.h"
 
@@ -240,9 +240,8 @@ class Multiresolution {
       active_[l + 1][k] |= active_[l][i];
       const bool first = share.is_first(k);
       const float before = share.add(k, fine.areas[i]);
-      held_[l + 1][k] =
-          first ? kernels_[l + 1].prolong(k, held_[l][i])
-                : kernels_[l + 1].merge(k, held_[l + 1][k], held_[l][i], before);
+      held_[l + 1][k] = first ? kernels_[l + 1].prolong(k, held_[l][i])
+                              : kernels_[l + 1].merge(k, held_[l + 1][k], held_[l][i], before);
     }
   }
 

@@ -15,8 +15,8 @@ struct DirectionConstraints {
 };
 
 /// One node's part of an orientation field (section 3.2): the energies of Eq. 2 and 4, and that of
-/// Knöppel et al., for every N-RoSy. The value is the representative vector; its length is 1 but for
-/// the convex energy, which leaves it free.
+/// Knöppel et al., for every N-RoSy. The value is the representative vector; its length is 1 but
+/// for the convex energy, which leaves it free.
 template <int N, OrientationEnergy E>
 class OrientationKernel {
  public:
@@ -34,8 +34,9 @@ class OrientationKernel {
     return std::cos(angle) * u + std::sin(angle) * n.cross(u);
   }
 
-  /// Eq. 3: the integers of each edge are chosen just before its neighbour is added, against the sum
-  /// so far. The sum's length does not matter to the choice, so it is normalised once, at the end.
+  /// Eq. 3: the integers of each edge are chosen just before its neighbour is added, against the
+  /// sum so far. The sum's length does not matter to the choice, so it is normalised once, at the
+  /// end.
   Vec3 relax(Index i, const Vec3* field) const {
     const Vec3& n = graph_->normals[i];
     if constexpr (E == OrientationEnergy::convex) {
@@ -100,9 +101,9 @@ class OrientationKernel {
     }
   }
 
-  /// With integers held, the mean of the neighbours, each turned back by k_ij: the exact minimiser of
-  /// the energy of chords, which agrees with that of angles up to fourth order. The convex energy's
-  /// minimiser is the mean itself, of any length.
+  /// With integers held, the mean of the neighbours, each turned back by k_ij: the exact minimiser
+  /// of the energy of chords, which agrees with that of angles up to fourth order. The convex
+  /// energy's minimiser is the mean itself, of any length.
   Vec3 relax_frozen(Index i, const Vec3* field, const Rotations* integers) const {
     const Vec3& n = graph_->normals[i];
     Vec3 sum = Vec3::Zero();

@@ -19,8 +19,8 @@ struct LatticeFrame {
   EdgeLength edge_length;
 };
 
-/// One node's part of a position field (section 3.3): the energies of Eq. 5 and 6 for both lattices.
-/// The value is the lattice point nearest to the node.
+/// One node's part of a position field (section 3.3): the energies of Eq. 5 and 6 for both
+/// lattices. The value is the lattice point nearest to the node.
 template <int S, PositionEnergy E>
 class PositionKernel {
  public:
@@ -101,8 +101,8 @@ class PositionKernel {
   }
 
   /// With integers held, the exact minimiser within the tangent plane: the mean of the neighbours'
-  /// points less our own translation, by the integers of both directions of each edge, which need not
-  /// ask for the same where the lattices of its ends differ.
+  /// points less our own translation, by the integers of both directions of each edge, which need
+  /// not ask for the same where the lattices of its ends differ.
   Vec3 relax_frozen(Index i, const Vec3* field, const Translations* integers) const {
     Vec3 sum = Vec3::Zero();
     float total = 0;
@@ -148,8 +148,8 @@ class PositionKernel {
     return p - graph_->normals[i] * graph_->normals[i].dot(p - graph_->positions[i]);
   }
 
-  /// p_ji: the neighbour's point unfolded into the tangent plane of i. Projected, as q_ij lies in both
-  /// planes only as far as its epsilon lets it: parallel planes have no common point.
+  /// p_ji: the neighbour's point unfolded into the tangent plane of i. Projected, as q_ij lies in
+  /// both planes only as far as its epsilon lets it: parallel planes have no common point.
   Vec3 unfolded(Index i, Index j, const Vec3* field) const {
     const Vec3 &ni = graph_->normals[i], &nj = graph_->normals[j];
     const Vec3 q = intermediate_position(graph_->positions[i], ni, graph_->positions[j], nj);
@@ -182,8 +182,8 @@ class PositionKernel {
     return (own - other).squaredNorm() / (rho * rho);
   }
 
-  /// Section 3.7: between the value found and its projection onto the plane spanned by the normal and
-  /// the constraint's line (or, without a direction, the constraint's point).
+  /// Section 3.7: between the value found and its projection onto the plane spanned by the normal
+  /// and the constraint's line (or, without a direction, the constraint's point).
   Vec3 constrain(Index i, const Vec3& p) const {
     if (constraints_->strengths.empty() || constraints_->strengths[i] == 0) return p;
     const Vec3 &c = constraints_->points[i], &d = constraints_->directions[i];
@@ -195,7 +195,8 @@ class PositionKernel {
     // A line that does not lie in the tangent plane must not pull along itself, only sideways.
     const Vec3 across = graph_->normals[i].cross(d);
     const float square = across.squaredNorm();
-    const Vec3 offset = square > 1e-6f ? Vec3(across * (across.dot(c - own) / square)) : Vec3(c - own);
+    const Vec3 offset =
+        square > 1e-6f ? Vec3(across * (across.dot(c - own) / square)) : Vec3(c - own);
     return project(i, own + constraints_->strengths[i] * offset);
   }
 

@@ -31,13 +31,14 @@ std::vector<LatticeFrame> restrict_frames(const Hierarchy& hierarchy,
       const Vec3& direction = frames[l].directions[i];
       const bool first = share.is_first(k);
       const float before = share.add(k, fine.areas[i]);
-      directions[k] = first ? kernel.prolong(k, direction)
-                            : kernel.merge(k, directions[k], direction, before);
+      directions[k] =
+          first ? kernel.prolong(k, direction) : kernel.merge(k, directions[k], direction, before);
       if (lengths.empty()) continue;
       const float length = frames[l].edge_length[i];
       lengths[k] = first ? length : before * lengths[k] + (1 - before) * length;
     }
-    frames[l + 1].edge_length = edge_length.uniform() ? edge_length : EdgeLength(std::move(lengths));
+    frames[l + 1].edge_length =
+        edge_length.uniform() ? edge_length : EdgeLength(std::move(lengths));
   }
   return frames;
 }

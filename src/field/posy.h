@@ -7,7 +7,6 @@
 
 namespace meshgrain {
 
-
 /// std::floor without its call, which the common instruction set has no instruction for.
 inline int floor_to_int(float x) {
   const int truncated = static_cast<int>(x);
@@ -16,8 +15,8 @@ inline int floor_to_int(float x) {
 
 /// The translations of an S-PoSy: the square (S = 4) or triangular (S = 6) lattice in the tangent
 /// plane of a node, through its position p, along its orientation o, with edge length rho
-/// (section 3.3). Integers are relative to p. For S = 6 two axes at 60 degrees reach every point that
-/// the paper's three reach.
+/// (section 3.3). Integers are relative to p. For S = 6 two axes at 60 degrees reach every point
+/// that the paper's three reach.
 template <int S>
 struct PoSy {
   static_assert(S == 4 || S == 6);
@@ -110,8 +109,8 @@ inline Vec3 intermediate_position(const Vec3& vi, const Vec3& ni, const Vec3& vj
 
 /// arg min over the corners of both lattices' cells around q_ij of the distance between the two
 /// points (section 3.3). For each of the four corners of j's cell only i's corner nearest to it can
-/// win, so four roundings replace sixteen distances; and as the four differ by j's axes, so do their
-/// coordinates in i's lattice and their heights over its plane.
+/// win, so four roundings replace sixteen distances; and as the four differ by j's axes, so do
+/// their coordinates in i's lattice and their heights over its plane.
 template <int S>
 Translations match_lattices(const PoSy<S>& i, const PoSy<S>& j, const Vec3& q) {
   const auto cell_i = i.floor(q), cell_j = j.floor(q);

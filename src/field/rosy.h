@@ -17,7 +17,9 @@ inline Vec3 transport(const Vec3& tangent, const Vec3& from, const Vec3& to) {
   return tangent - (from + to) * (to.dot(tangent) / (1 + cosine));
 }
 
-inline Vec3 project_to_plane(const Vec3& v, const Vec3& normal) { return v - normal * normal.dot(v); }
+inline Vec3 project_to_plane(const Vec3& v, const Vec3& normal) {
+  return v - normal * normal.dot(v);
+}
 
 /// Some unit vector orthogonal to `normal`, continuous almost everywhere (Duff et al. 2017).
 inline Vec3 any_tangent(const Vec3& normal) {
@@ -46,10 +48,14 @@ struct RoSy {
       return k == 0 ? o : Vec3(-o);
     } else if constexpr (N == 4) {
       switch (k) {
-        case 0: return o;
-        case 1: return n.cross(o);
-        case 2: return -o;
-        default: return o.cross(n);
+        case 0:
+          return o;
+        case 1:
+          return n.cross(o);
+        case 2:
+          return -o;
+        default:
+          return o.cross(n);
       }
     } else {
       constexpr float half_root3 = 0.866025404f;

@@ -78,8 +78,7 @@ std::vector<PositionSingularity> position_singularities(const Mesh& triangles, c
         std::array<int, 2> total{0, 0};
         int rotation = 0;  // that turns the current vertex's frame into the first's
         for (std::size_t k = 0; k < 3; ++k) {
-          const Jump jump =
-              edge_jump(graph, orientation, position, energy, v[k], v[(k + 1) % 3]);
+          const Jump jump = edge_jump(graph, orientation, position, energy, v[k], v[(k + 1) % 3]);
           const auto t = rotate_jump(jump.t, (posy - rotation) % posy, posy);
           total = {total[0] + t[0], total[1] + t[1]};
           rotation = (rotation + jump.rotation) % posy;

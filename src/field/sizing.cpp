@@ -55,8 +55,8 @@ EdgeLength relative_edge_lengths(const Graph& graph, const Sizing& sizing,
       }
     }
   } else {
-    const Curvature curvature = estimate_curvature(graph.offsets, graph.neighbors,
-                                                   graph.positions, graph.normals, context, 2);
+    const Curvature curvature = estimate_curvature(graph.offsets, graph.neighbors, graph.positions,
+                                                   graph.normals, context, 2);
     for (std::size_t i = 0; i < n; ++i) {
       // An edge that spans a given angle is as long as the radius is; the clamp keeps flat parts
       // from growing and noise from shrinking without bound.

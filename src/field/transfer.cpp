@@ -50,8 +50,8 @@ PositionField transfer_position(const Fields& fields, const Graph& graph, const 
   result.edge_length = EdgeLength(std::move(lengths));
   with_posy(from.posy, [&]<int S>() {
     for (std::size_t i = 0; i < graph.size(); ++i) {
-      const Vec3 p =
-          frame.inside(from.points[nearest[i]].cast<double>() + fields.surface.origin).cast<float>();
+      const Vec3 p = frame.inside(from.points[nearest[i]].cast<double>() + fields.surface.origin)
+                         .cast<float>();
       const Vec3& n = graph.normals[i];
       const PoSy<S> lattice(p - n * n.dot(p - graph.positions[i]), orientation.directions[i], n,
                             result.edge_length[i]);

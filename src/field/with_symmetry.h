@@ -6,15 +6,19 @@
 
 namespace meshgrain {
 
-/// Calls `f.operator()<N>()` for the N that is known at run time. The lists of symmetries that exist
-/// are here and nowhere else.
+/// Calls `f.operator()<N>()` for the N that is known at run time. The lists of symmetries that
+/// exist are here and nowhere else.
 template <typename F>
 decltype(auto) with_rosy(int rosy, F&& f) {
   switch (rosy) {
-    case 1: return f.template operator()<1>();
-    case 2: return f.template operator()<2>();
-    case 4: return f.template operator()<4>();
-    case 6: return f.template operator()<6>();
+    case 1:
+      return f.template operator()<1>();
+    case 2:
+      return f.template operator()<2>();
+    case 4:
+      return f.template operator()<4>();
+    case 6:
+      return f.template operator()<6>();
     default:
       throw Error("orientation symmetry " + std::to_string(rosy) + " is not one of 1, 2, 4 and 6");
   }
@@ -23,9 +27,12 @@ decltype(auto) with_rosy(int rosy, F&& f) {
 template <typename F>
 decltype(auto) with_posy(int posy, F&& f) {
   switch (posy) {
-    case 4: return f.template operator()<4>();
-    case 6: return f.template operator()<6>();
-    default: throw Error("position symmetry " + std::to_string(posy) + " is not one of 4 and 6");
+    case 4:
+      return f.template operator()<4>();
+    case 6:
+      return f.template operator()<6>();
+    default:
+      throw Error("position symmetry " + std::to_string(posy) + " is not one of 4 and 6");
   }
 }
 

@@ -30,8 +30,8 @@ Index append_mean(Extraction& extraction, std::span<const Index> vertices) {
   return id;
 }
 
-/// The undirected edges of all faces, each with the corners (positions in Faces::corners) that start
-/// it, sorted.
+/// The undirected edges of all faces, each with the corners (positions in Faces::corners) that
+/// start it, sorted.
 struct CornerEdge {
   Index low, high, face, corner;
   auto key() const { return std::pair(low, high); }
@@ -75,8 +75,7 @@ void split_into_quads(Extraction& extraction) {
     const Index center = append_mean(extraction, face);
     const std::size_t first = faces.first(f), n = face.size();
     for (std::size_t k = 0; k < n; ++k) {
-      mesh.faces.push_back(
-          {face[k], middle[first + k], center, middle[first + (k + n - 1) % n]});
+      mesh.faces.push_back({face[k], middle[first + k], center, middle[first + (k + n - 1) % n]});
     }
   }
 }
@@ -131,8 +130,8 @@ void take_dual(Extraction& extraction) {
 
 std::size_t make_manifold(Extraction& extraction) {
   Mesh& mesh = extraction.mesh;
-  // Faces are let in one after the other; one that meets an edge already used in its direction would
-  // be the third on it, or turned over.
+  // Faces are let in one after the other; one that meets an edge already used in its direction
+  // would be the third on it, or turned over.
   std::map<std::pair<Index, Index>, Index> used;  // directed edge -> face
   Faces kept;
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
@@ -163,7 +162,8 @@ std::size_t make_manifold(Extraction& extraction) {
     };
     const auto spokes = [&](Index f) {
       const auto face = std::as_const(mesh.faces)[f];
-      const auto k = static_cast<std::size_t>(std::find(face.begin(), face.end(), v) - face.begin());
+      const auto k =
+          static_cast<std::size_t>(std::find(face.begin(), face.end(), v) - face.begin());
       return std::pair(face[(k + 1) % face.size()], face[(k + face.size() - 1) % face.size()]);
     };
     for (Index a = 0; a < faces.size(); ++a) {

@@ -57,9 +57,9 @@ class Grid {
   std::vector<std::pair<Cell, Index>> cells_;
 };
 
-/// The creases of a mechanical part; nothing for a sculpture or a scan, whose sharp edges are detail or
-/// noise that vertices should not be tied to. Told by the length of edges of every sharpness: in a part
-/// they are either nearly flat or creases, with little in between.
+/// The creases of a mechanical part; nothing for a sculpture or a scan, whose sharp edges are
+/// detail or noise that vertices should not be tied to. Told by the length of edges of every
+/// sharpness: in a part they are either nearly flat or creases, with little in between.
 std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& surface, double degrees,
                                                      const Context& context) {
   const auto length = [&](const std::vector<std::array<Index, 2>>& edges) {
@@ -140,7 +140,8 @@ Vec3 FeatureLines::project(const Vec3& p, Index& seed) const {
   return best;
 }
 
-Rails attach_to_lines(const Extraction& extraction, const Mesh& surface, const FeatureLines& lines) {
+Rails attach_to_lines(const Extraction& extraction, const Mesh& surface,
+                      const FeatureLines& lines) {
   const Mesh& mesh = extraction.mesh;
   const std::size_t n = mesh.positions.size();
   Rails rails{std::vector<Index>(n, no_index), std::vector<std::uint8_t>(n, 0)};

@@ -10,9 +10,7 @@ namespace meshgrain {
 Projector::Projector(const Mesh& surface, const Graph& graph)
     : surface_(surface),
       graph_(graph),
-      around_(surface.is_point_cloud() ? VertexFaces{}
-                                       : vertex_faces(surface)) {
-}
+      around_(surface.is_point_cloud() ? VertexFaces{} : vertex_faces(surface)) {}
 
 Vec3 Projector::nearest_around(const Vec3& p, Index vertex, Index& nearest_corner) const {
   Vec3 best = surface_.positions[vertex];
@@ -20,9 +18,8 @@ Vec3 Projector::nearest_around(const Vec3& p, Index vertex, Index& nearest_corne
   nearest_corner = vertex;
   for (const Index f : around_[vertex]) {
     const auto face = surface_.faces[f];
-    const Vec3 q = closest_point_on_triangle<Vec3>(p, surface_.positions[face[0]],
-                                                   surface_.positions[face[1]],
-                                                   surface_.positions[face[2]]);
+    const Vec3 q = closest_point_on_triangle<Vec3>(
+        p, surface_.positions[face[0]], surface_.positions[face[1]], surface_.positions[face[2]]);
     const float distance = (p - q).squaredNorm();
     if (distance >= best_distance) continue;
     best_distance = distance;

@@ -15,8 +15,8 @@ class Projector {
   /// this.
   Projector(const Mesh& surface, const Graph& graph);
 
-  /// The point of the surface nearest to `p`. `seed` is where to start (a vertex of the surface), and
-  /// becomes the one where the walk ended.
+  /// The point of the surface nearest to `p`. `seed` is where to start (a vertex of the surface),
+  /// and becomes the one where the walk ended.
   Vec3 project(const Vec3& p, Index& seed) const;
 
   /// The normal of the surface at a vertex.

@@ -15,11 +15,11 @@
 namespace meshgrain {
 namespace {
 
-/// For every corner of a face, its place in the regular polygon that fits the face best: the face in
-/// its mean plane as complex numbers, of which the first Fourier coefficient is that polygon
-/// (in the least-squares sense, with free size and turn). The size is then drawn towards that of a
-/// polygon of the given side. A face that has turned over, or nearly, is fitted by a polygon that has
-/// not: `upward` is the normal of the surface under it.
+/// For every corner of a face, its place in the regular polygon that fits the face best: the face
+/// in its mean plane as complex numbers, of which the first Fourier coefficient is that polygon (in
+/// the least-squares sense, with free size and turn). The size is then drawn towards that of a
+/// polygon of the given side. A face that has turned over, or nearly, is fitted by a polygon that
+/// has not: `upward` is the normal of the surface under it.
 void regular_targets(std::span<const Index> face, const std::vector<Vec3>& positions,
                      const Vec3& upward, float side, float evenness, std::span<Vec3> targets) {
   const std::size_t n = face.size();
@@ -45,8 +45,8 @@ void regular_targets(std::span<const Index> face, const std::vector<Vec3>& posit
   std::complex<float> coefficient = 0;
   for (std::size_t k = 0; k < n; ++k) {
     const Vec3 d = positions[face[k]] - center;
-    coefficient += std::complex<float>(d.dot(x), d.dot(y)) *
-                   std::polar(1.0f, -step * static_cast<float>(k));
+    coefficient +=
+        std::complex<float>(d.dot(x), d.dot(y)) * std::polar(1.0f, -step * static_cast<float>(k));
   }
   coefficient /= static_cast<float>(n);
   const float radius = side / (2 * std::sin(step / 2));
@@ -85,7 +85,8 @@ float mean_side(const Mesh& mesh, const EdgeLength& relative) {
 void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
             const SmoothOptions& options, const Context& context) {
   constexpr std::size_t grain = 1024;
-  // Steps a little longer than to the mean converge in fewer iterations; beyond 2 they would diverge.
+  // Steps a little longer than to the mean converge in fewer iterations; beyond 2 they would
+  // diverge.
   constexpr float overrelaxation = 1.5f;
   const auto evenness = static_cast<float>(options.evenness);
   Mesh& mesh = extraction.mesh;
@@ -132,8 +133,7 @@ void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
         const float length = upward.norm();
         if (length > 0) upward /= length;
         regular_targets(std::as_const(mesh.faces)[f], mesh.positions, upward, relative * side,
-                        evenness,
-                        {targets.data() + mesh.faces.first(f), mesh.faces.degree(f)});
+                        evenness, {targets.data() + mesh.faces.first(f), mesh.faces.degree(f)});
       }
     });
     context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {

@@ -49,8 +49,8 @@ float cotangent(const Vec3& apex, const Vec3& a, const Vec3& b) {
   return sine > 0 ? u.dot(v) / sine : 0.0f;
 }
 
-/// The part of a triangle's area that belongs to its corner `a`: that of its Voronoi cell, cut to the
-/// triangle where that is obtuse (Meyer et al. 2003, "mixed area").
+/// The part of a triangle's area that belongs to its corner `a`: that of its Voronoi cell, cut to
+/// the triangle where that is obtuse (Meyer et al. 2003, "mixed area").
 float voronoi_share(const Vec3& a, const Vec3& b, const Vec3& c) {
   const float area = 0.5f * (b - a).cross(c - a).norm();
   if ((b - a).dot(c - a) < 0) return area / 2;
@@ -210,8 +210,8 @@ Graph cloud_graph(const Mesh& cloud, const GraphOptions& options, const Context&
   context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
-        // The heat kernel of Belkin et al. 2009, at the mean of both ends' scales: weights must be the
-        // same from either end, or there is no energy that the local steps lower.
+        // The heat kernel of Belkin et al. 2009, at the mean of both ends' scales: weights must be
+        // the same from either end, or there is no energy that the local steps lower.
         const Index j = graph.neighbors[e];
         const float d = (graph.positions[j] - graph.positions[i]).squaredNorm();
         const float both = scale[i] + scale[j];

@@ -11,9 +11,9 @@ namespace {
 
 constexpr std::size_t grain = 2048;
 
-/// The neighbour of i with the best score of section 3.5 among those that `admits`, or no_index. The
-/// score of an edge must be the same seen from both ends, and ties must be broken alike, or proposals
-/// could chase each other in circles; a hash of the edge breaks them without a pattern.
+/// The neighbour of i with the best score of section 3.5 among those that `admits`, or no_index.
+/// The score of an edge must be the same seen from both ends, and ties must be broken alike, or
+/// proposals could chase each other in circles; a hash of the edge breaks them without a pattern.
 template <typename Admits>
 Index best_neighbor(const Graph& graph, Index i, const Admits& admits) {
   Index best = no_index;
@@ -111,8 +111,7 @@ Grouping group(const std::vector<Index>& partner) {
   return result;
 }
 
-void merge_nodes(const Graph& fine, const Grouping& groups, Graph& coarse,
-                 const Context& context) {
+void merge_nodes(const Graph& fine, const Grouping& groups, Graph& coarse, const Context& context) {
   const std::size_t n = groups.size();
   coarse.positions.resize(n);
   coarse.normals.resize(n);
@@ -142,8 +141,7 @@ struct Neighbor {
   float weight;
 };
 
-void merge_edges(const Graph& fine, const Grouping& groups, Graph& coarse,
-                 const Context& context) {
+void merge_edges(const Graph& fine, const Grouping& groups, Graph& coarse, const Context& context) {
   const std::size_t n = groups.size();
   coarse.offsets.assign(n + 1, 0);
   // Each range gathers its own neighbours, which then have a known place.

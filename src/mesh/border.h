@@ -12,11 +12,12 @@ namespace meshgrain {
 std::vector<std::array<Index, 2>> border_edges(const Mesh& mesh,
                                                const Context& context = Context(1));
 
-/// The edges that are not simply between two faces of opposite direction: the border, and where more
-/// than two faces or sides that disagree meet. Each once, the smaller index first.
+/// The edges that are not simply between two faces of opposite direction: the border, and where
+/// more than two faces or sides that disagree meet. Each once, the smaller index first.
 std::vector<std::array<Index, 2>> rim_edges(const Mesh& mesh, const Context& context = Context(1));
 
-/// The edges between two faces whose normals differ by more than `degrees`, the smaller index first.
+/// The edges between two faces whose normals differ by more than `degrees`, the smaller index
+/// first.
 std::vector<std::array<Index, 2>> crease_edges(const Mesh& mesh, double degrees,
                                                const Context& context = Context(1));
 

@@ -5,8 +5,8 @@
 namespace meshgrain {
 
 /// A change of units in which every surface is about one unit large, so that squares and cubes of
-/// lengths are safe in single precision however small or large the input is. The scale is a power of
-/// two: no bit is lost on the way in or out.
+/// lengths are safe in single precision however small or large the input is. The scale is a power
+/// of two: no bit is lost on the way in or out.
 struct Frame {
   double scale = 1;  ///< Input units a unit of the frame.
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();

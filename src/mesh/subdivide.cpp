@@ -104,8 +104,9 @@ void subdivide(Mesh& mesh, double max_length, const Context& context) {
     if (midpoints.ends.empty()) return;
     const auto old_count = static_cast<Index>(mesh.positions.size());
     if (midpoints.ends.size() + old_count > 0xfffffff0u) {
-      throw Error("the target edge length is too small: subdividing the input to it takes more than "
-                  "four thousand million vertices");
+      throw Error(
+          "the target edge length is too small: subdividing the input to it takes more than "
+          "four thousand million vertices");
     }
     for (Index a = 0; a < old_count; ++a) {
       for (Index e = midpoints.offsets[a]; e < midpoints.offsets[a + 1]; ++e) {

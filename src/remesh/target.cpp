@@ -1,4 +1,4 @@
-#include "finish/target.h"
+#include "remesh/target.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +10,9 @@ int posy_of(OutputFaces faces) {
 }
 
 Target::Target(const RemeshOptions& options, std::size_t input_vertices, double scale) {
-  // A cell of the triangular lattice is two triangles, or one vertex; of its dual, two vertices or one
-  // hexagon. A pure quad mesh has four quads, and four vertices, for each of the lattice's before its
-  // split.
+  // A cell of the triangular lattice is two triangles, or one vertex; of its dual, two vertices or
+  // one hexagon. A pure quad mesh has four quads, and four vertices, for each of the lattice's
+  // before its split.
   if (posy_of(options.faces) == 6) cell_area_ = std::sqrt(3.0) / 2;
   const bool split = options.faces == OutputFaces::quads;
   const bool dual = options.faces == OutputFaces::hexagons;

@@ -10,7 +10,8 @@ namespace meshgrain {
 /// Runs the stages of a long call one after the other, each under its name and with its time taken.
 class Stages {
  public:
-  Stages(const Context& context, std::vector<StageTime>& times) : context_(context), times_(times) {}
+  Stages(const Context& context, std::vector<StageTime>& times)
+      : context_(context), times_(times) {}
 
   template <typename Body>
   auto operator()(const char* name, const Body& body) {

@@ -14,8 +14,8 @@ class Target {
   /// `scale`: input units a unit of the surface.
   Target(const RemeshOptions& options, std::size_t input_vertices, double scale);
 
-  /// The edge length that gives a surface of this area as many lattice cells as are wanted; or the one
-  /// asked for.
+  /// The edge length that gives a surface of this area as many lattice cells as are wanted; or the
+  /// one asked for.
   double edge_length(double area) const;
 
   /// The edge length at every node of a graph, varying as `relative` does.
@@ -25,9 +25,9 @@ class Target {
   double count_ratio(const Mesh& mesh) const;
 
  private:
-  double cells_ = 0;      // wanted squares, or pairs of triangles; 0: by length
-  double length_ = 0;     // wanted lattice edge length, if by length
-  double cell_area_ = 1;  // in squared edge lengths
+  double cells_ = 0;                 // wanted squares, or pairs of triangles; 0: by length
+  double length_ = 0;                // wanted lattice edge length, if by length
+  double cell_area_ = 1;             // in squared edge lengths
   double faces_ = 0, vertices_ = 0;  // wanted; 0 if not what was asked for
 };
 
