@@ -153,7 +153,7 @@ class Pipeline {
   /// longer or shorter, and the nearest is kept.
   void position_and_extract() {
     constexpr int attempts = 3;
-    constexpr double tolerance = 0.03;
+    constexpr double tolerance = 0.05;
     const bool given = options_.fields != nullptr && !options_.fields->position.points.empty();
     double least_error = std::numeric_limits<double>::infinity();
     for (int attempt = 0; attempt < attempts; ++attempt) {

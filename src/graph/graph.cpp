@@ -186,19 +186,17 @@ Graph cloud_graph(const Mesh& cloud, const GraphOptions& options, const Context&
       },
       context);
 
-  // A point stands for the disk that reaches half way to its neighbours: exact enough for merging
-  // by area, and in the mean right for a target count.
+  // Of evenly scattered points, as many as there are a unit of area, the j-th nearest lies at a mean
+  // squared distance of j / (pi density): the k nearest together tell the area of one.
   graph.areas.resize(n);
   std::vector<float> scale(n, 0);  // mean squared distance to the neighbours
   context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const auto neighbors = graph.neighbors_of(i);
+      const auto neighbors = nearest[i];
       float squares = 0;
       for (const Index j : neighbors) {
         squares += (graph.positions[j] - graph.positions[i]).squaredNorm();
       }
-      // k points evenly spread over a disk of radius r have a mean squared distance of r^2 / 2, and
-      // the disk holds k + 1 points.
       const float count = static_cast<float>(neighbors.size());
       const float mean = count > 0 ? squares / count : 0.0f;
       graph.areas[i] = 3.14159265f * 2 * mean / (count + 1);
