@@ -21,10 +21,10 @@ void take_dual(Extraction& extraction);
 std::size_t make_manifold(Extraction& extraction);
 
 struct SmoothOptions {
-  int iterations = 40;
+  int iterations = 60;
   /// How strongly faces are drawn to one size, 0 to 1: areas become more even, angles a little
   /// less.
-  double evenness = 0.5;
+  double evenness = 0.55;
   /// Chains of edges that lie on creases of a mechanical part sharper than this stay on them; < 0:
   /// none do.
   double crease_degrees = 40;

@@ -38,7 +38,7 @@ struct RemeshOptions {
   PositionEnergy position_energy = PositionEnergy::extrinsic;
   bool align_border = false;
   CurvatureAlignment curvature;
-  int smoothing = 40;     ///< Iterations of smooth() (0: only put onto the surface).
+  int smoothing = 60;     ///< Iterations of smooth() (0: only put onto the surface).
   bool manifold = false;  ///< Drop what is not manifold.
 
   /// Use these instead of solving for an orientation field (and a position field, if that has
