@@ -1,0 +1,156 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "meshgrain/meshgrain.h"
+
+// Real models, from the folder that the environment variable MESHGRAIN_MODELS names.
+
+namespace meshgrain {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Models : public testing::Test {
+ protected:
+  void SetUp() override {
+    const char* folder = std::getenv("MESHGRAIN_MODELS");
+    if (folder == nullptr) GTEST_SKIP() << "MESHGRAIN_MODELS names no folder of models";
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      const std::string extension = entry.path().extension().string();
+      if (extension == ".md" || extension == ".txt") continue;
+      files_[entry.path().stem().string()] = entry.path();
+    }
+    ASSERT_FALSE(files_.empty()) << folder << " is empty";
+  }
+
+  static constexpr std::size_t wanted = 5000;
+
+  static RemeshResult remesh_to(const Mesh& mesh, OutputFaces faces) {
+    RemeshOptions options;
+    options.faces = faces;
+    options.face_count = wanted;
+    return remesh(mesh, options);
+  }
+
+  std::map<std::string, fs::path> files_;
+};
+
+bool is_manifold(const MeshStatistics& s) {
+  return s.non_manifold_edges == 0 && s.non_manifold_vertices == 0;
+}
+
+struct Means {
+  double area_sigma = 0, angle_sigma = 0, singularities = 0, irregular = 0;
+  int models = 0;
+};
+
+/// The models that the figures of the comparison are means over.
+const char* const compared[] = {"fandisk",        "armadillo",  "spot",      "cheburashka",
+                                "3holes",         "bumpy-cube", "nefertiti", "homer",
+                                "stanford-bunny", "cow",        "suzanne"};
+
+class EveryModel : public Models {
+ protected:
+  /// Checks what holds for every file, and returns the means over the compared models.
+  Means check_all(OutputFaces faces) {
+    Means means;
+    for (const auto& [name, path] : files_) {
+      SCOPED_TRACE(path.filename().string());
+      Mesh input = read_mesh(path);
+      clean(input);
+      const Mesh result = remesh_to(input, faces).mesh;
+      const MeshStatistics s = mesh_statistics(result);
+      EXPECT_NEAR(static_cast<double>(s.faces), wanted, 0.1 * wanted);
+      EXPECT_EQ(s.isolated_vertices, 0u);
+      for (const Vec3& p : result.positions) EXPECT_TRUE(p.allFinite());
+      if (faces == OutputFaces::quads) {
+        EXPECT_EQ(s.quads, s.faces);
+      } else if (faces == OutputFaces::triangles) {
+        EXPECT_EQ(s.triangles, s.faces);
+      }
+      if (!input.is_point_cloud()) {
+        const MeshStatistics before = mesh_statistics(input);
+        if (is_manifold(before)) {
+          EXPECT_TRUE(is_manifold(s));
+          EXPECT_EQ(s.euler, before.euler);
+          EXPECT_EQ(s.components, before.components);
+          EXPECT_EQ(s.boundary_loops, before.boundary_loops);
+        }
+      }
+      if (std::find(std::begin(compared), std::end(compared), name) == std::end(compared)) continue;
+      ++means.models;
+      means.area_sigma += s.area_sigma;
+      means.angle_sigma += s.angle_sigma;
+      means.singularities += static_cast<double>(s.singularities);
+      means.irregular += static_cast<double>(s.irregular_vertices);
+    }
+    for (double* sum :
+         {&means.area_sigma, &means.angle_sigma, &means.singularities, &means.irregular}) {
+      *sum /= std::max(means.models, 1);
+    }
+    return means;
+  }
+};
+
+constexpr int all_compared = static_cast<int>(std::size(compared));
+
+TEST_F(EveryModel, AsQuads) {
+  const Means means = check_all(OutputFaces::quads);
+  if (means.models < all_compared) GTEST_SKIP() << "not all of the compared models are there";
+  EXPECT_LE(means.area_sigma, 0.17);
+  EXPECT_LE(means.angle_sigma, 8.8);
+  EXPECT_LE(means.singularities, 205);
+}
+
+TEST_F(EveryModel, AsQuadDominantMeshes) {
+  const Means means = check_all(OutputFaces::quad_dominant);
+  if (means.models < all_compared) GTEST_SKIP() << "not all of the compared models are there";
+  EXPECT_LE(means.area_sigma, 0.19);
+  EXPECT_LE(means.angle_sigma, 6.8);
+  EXPECT_LE(means.singularities, 505);
+}
+
+TEST_F(EveryModel, AsTriangles) {
+  const Means means = check_all(OutputFaces::triangles);
+  if (means.models < all_compared) GTEST_SKIP() << "not all of the compared models are there";
+  EXPECT_LE(means.area_sigma, 0.145);
+  EXPECT_LE(means.angle_sigma, 5.7);
+  EXPECT_LE(means.irregular, 228);
+}
+
+TEST_F(Models, FewOrientationSingularities) {
+  const std::map<std::string, std::size_t> most = {
+      {"fandisk", 34}, {"3holes", 38}, {"bumpy-cube", 32}};
+  int checked = 0;
+  for (const auto& [name, limit] : most) {
+    if (!files_.contains(name)) continue;
+    ++checked;
+    const Mesh input = read_mesh(files_[name]);
+    for (const OutputFaces faces : {OutputFaces::quads, OutputFaces::quad_dominant}) {
+      EXPECT_LE(remesh_to(input, faces).report.orientation_singularities.value(), limit) << name;
+    }
+  }
+  if (checked == 0) GTEST_SKIP() << "none of the models is there";
+}
+
+/// Points that were sampled from one closed surface come back as one closed surface.
+TEST_F(Models, ACloudComesBackAsOneSurface) {
+  if (!files_.contains("armadillo")) GTEST_SKIP() << "no armadillo";
+  const Mesh mesh = read_mesh(files_["armadillo"]);
+  Mesh cloud = mesh;
+  cloud.faces.clear();
+  const MeshStatistics of_mesh = mesh_statistics(remesh_to(mesh, OutputFaces::quads).mesh);
+  const MeshStatistics of_cloud = mesh_statistics(remesh_to(cloud, OutputFaces::quads).mesh);
+  EXPECT_EQ(of_cloud.components, 1u);
+  EXPECT_EQ(of_cloud.boundary_loops, 0u);
+  EXPECT_LE(of_cloud.area_sigma, 1.1 * of_mesh.area_sigma);
+  EXPECT_LE(of_cloud.angle_sigma, 1.1 * of_mesh.angle_sigma);
+}
+
+}  // namespace
+}  // namespace meshgrain
