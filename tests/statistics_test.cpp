@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <vector>
 
 #include "measure/bvh.h"
 #include "meshgrain/error.h"
@@ -222,6 +224,33 @@ TEST(SurfaceDistance, RefusesEmptyMeshesAndLengths) {
   EXPECT_THROW(surface_distance(Mesh(), plate, 1), Error);
   EXPECT_THROW(surface_distance(plate, plate, 0), Error);
   EXPECT_THROW(surface_distance(plate, plate, std::nan("")), Error);
+}
+
+/// Seven hexagons: the inner vertices have three neighbours.
+TEST(MeshStatistics, AHoneycombIsRegular) {
+  Mesh mesh;
+  std::map<std::pair<long, long>, Index> found;
+  const auto corner = [&](double x, double y) {
+    const auto [it, fresh] = found.try_emplace({std::lround(x * 1000), std::lround(y * 1000)},
+                                               static_cast<Index>(mesh.positions.size()));
+    if (fresh) mesh.positions.emplace_back(static_cast<float>(x), static_cast<float>(y), 0.0f);
+    return it->second;
+  };
+  const double step = std::numbers::pi / 3;
+  for (int cell = 0; cell < 7; ++cell) {
+    const double far = cell == 0 ? 0 : std::sqrt(3.0), turn = (cell + 0.5) * step;
+    std::vector<Index> face;
+    for (int k = 0; k < 6; ++k) {
+      face.push_back(corner(far * std::cos(turn) + std::cos(k * step),
+                            far * std::sin(turn) + std::sin(k * step)));
+    }
+    mesh.faces.push_back(face);
+  }
+  MeshStatistics s = mesh_statistics(mesh);
+  EXPECT_EQ(s.vertices, 24u);
+  EXPECT_EQ(s.irregular_vertices, 0u);
+  EXPECT_EQ(s.singularities, 0u);
+  EXPECT_NEAR(s.angle_sigma, 0, 1e-3);
 }
 
 }  // namespace

@@ -187,7 +187,8 @@ void add_options(CLI::App& app, Arguments& a) {
   method(app.add_option("-k,--knn", o.graph.neighbors, "neighbours of each point of a cloud (10)")
              ->check(CLI::Range(3, 1000))
              ->type_name("N"));
-  method(app.add_option("-S,--smooth", o.smoothing, "smoothing steps at the end (10)")
+  method(app.add_option("-S,--smooth", o.smoothing,
+                        fmt::format("smoothing steps at the end ({})", RemeshOptions().smoothing))
              ->check(CLI::Range(0, 100000))
              ->type_name("N"));
   method(app.add_option("--seed", o.solver.seed, "of the random start (0)")->type_name("N"));

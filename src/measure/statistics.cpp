@@ -197,7 +197,10 @@ MeshStatistics mesh_statistics(const Mesh& mesh) {
 
   const VertexDegrees degrees = vertex_degrees(mesh, edges);
   for (std::size_t v = 0; v < s.vertices; ++v) s.irregular_vertices += degrees.irregular(v);
-  s.singularities = s.irregular_vertices + s.faces - (degrees.regular == 6 ? s.triangles : s.quads);
+  s.singularities = s.irregular_vertices;
+  for (std::size_t f = 0; f < s.faces; ++f) {
+    s.singularities += mesh.faces.degree(f) != degrees.regular_face;
+  }
   return s;
 }
 

@@ -45,15 +45,19 @@ VertexDegrees vertex_degrees(const Mesh& mesh, const std::vector<Edge>& edges) {
     ++degrees.neighbours[edge.b];
     if (edge.uses != 2) degrees.border[edge.a] = degrees.border[edge.b] = 1;
   }
-  degrees.regular = triangles_prevail(mesh.faces) ? 6 : 4;
+  degrees.regular_face = regular_face_degree(mesh.faces);
+  degrees.regular = degrees.regular_face == 3 ? 6 : degrees.regular_face == 6 ? 3 : 4;
   return degrees;
 }
 
-bool triangles_prevail(const Faces& faces) {
-  if (faces.uniform_degree() != 0) return faces.uniform_degree() == 3;
-  std::size_t triangles = 0;
-  for (std::size_t f = 0; f < faces.size(); ++f) triangles += faces.degree(f) == 3;
-  return 10 * triangles > 9 * faces.size();
+Index regular_face_degree(const Faces& faces) {
+  std::size_t triangles = 0, hexagons = 0;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    triangles += faces.degree(f) == 3;
+    hexagons += faces.degree(f) == 6;
+  }
+  if (10 * triangles > 9 * faces.size()) return 3;
+  return 2 * hexagons > faces.size() ? 6 : 4;
 }
 
 }  // namespace meshgrain

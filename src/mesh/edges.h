@@ -20,7 +20,8 @@ std::vector<Edge> edges_of(const Mesh& mesh);
 struct VertexDegrees {
   std::vector<Index> neighbours;     ///< Number of edges at each vertex.
   std::vector<std::uint8_t> border;  ///< 1 where an edge does not have exactly two faces.
-  Index regular = 4;                 ///< Neighbours of a regular vertex: 6 if triangles prevail.
+  Index regular = 4;                 ///< Neighbours of a regular inner vertex.
+  Index regular_face = 4;            ///< Corners of a regular face.
 
   /// Whether `v` is an interior vertex without the regular number of neighbours.
   bool irregular(std::size_t v) const {
@@ -30,7 +31,8 @@ struct VertexDegrees {
 
 VertexDegrees vertex_degrees(const Mesh& mesh, const std::vector<Edge>& edges);
 
-/// Whether more than 90 % of the faces are triangles.
-bool triangles_prevail(const Faces& faces);
+/// The kind of a mesh, as the corners of its regular face: 3 if more than 90 % of the faces are
+/// triangles, 6 if more than half are hexagons, else 4.
+Index regular_face_degree(const Faces& faces);
 
 }  // namespace meshgrain

@@ -106,7 +106,7 @@ void add_marks(const Mesh& mesh, const PictureOptions& options, Scene& scene) {
   }
   if (options.irregular) {
     scene.dot_radius = std::min(0.22f * mean, size / 110);
-    scene.tint_non_quads = degrees.regular == 4;
+    scene.regular_face = degrees.regular_face;
     scene.irregular.assign(mesh.positions.size(), 0);
     for (std::size_t v = 0; v < mesh.positions.size(); ++v)
       if (degrees.irregular(v))

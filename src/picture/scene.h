@@ -22,7 +22,7 @@ struct Scene {
   std::vector<std::int8_t> irregular;  ///< Per vertex: -1 fewer neighbours, 1 more; or empty.
   /// Per vertex: the other ends of (two of) its border edges, or no_index; or empty.
   std::vector<std::array<Index, 2>> border_neighbours;
-  bool tint_non_quads = false;
+  std::size_t regular_face = 0;  // corners of the faces that are not tinted; 0: none is
 
   float line_width = 0;     ///< 0 draws no edges.
   float line_strength = 0;  ///< Opacity of the edges: less where they are dense on the whole.

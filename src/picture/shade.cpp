@@ -117,7 +117,8 @@ Sample shade_triangle(const Scene& scene, Index triangle, const Vec2& place) {
   if (n.z() < 0) n = Vec3(n.x(), n.y(), 0).stableNormalized();
 
   const auto face = (*scene.faces)[scene.face_of[triangle]];
-  const Vec3 base = back ? inside : scene.tint_non_quads && face.size() != 4 ? odd_face : clay;
+  const bool odd = scene.regular_face != 0 && face.size() != scene.regular_face;
+  const Vec3 base = back ? inside : odd ? odd_face : clay;
   Sample sample{light(base, n), n};
   draw_marks(scene, face, p, sample.colour);
   return sample;
