@@ -186,8 +186,8 @@ Graph cloud_graph(const Mesh& cloud, const GraphOptions& options, const Context&
       },
       context);
 
-  // Of evenly scattered points, as many as there are a unit of area, the j-th nearest lies at a mean
-  // squared distance of j / (pi density): the k nearest together tell the area of one.
+  // Of evenly scattered points, as many as there are a unit of area, the j-th nearest lies at a
+  // mean squared distance of j / (pi density): the k nearest together tell the area of one.
   graph.areas.resize(n);
   std::vector<float> scale(n, 0);  // mean squared distance to the neighbours
   context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
