@@ -19,7 +19,8 @@ class Models : public testing::Test {
  protected:
   void SetUp() override {
     const char* folder = std::getenv("MESHGRAIN_MODELS");
-    if (folder == nullptr) GTEST_SKIP() << "MESHGRAIN_MODELS names no folder of models";
+    if (folder == nullptr || *folder == '\0')
+      GTEST_SKIP() << "MESHGRAIN_MODELS names no folder of models";
     for (const auto& entry : fs::directory_iterator(folder)) {
       const std::string extension = entry.path().extension().string();
       if (extension == ".md" || extension == ".txt") continue;

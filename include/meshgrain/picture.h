@@ -25,8 +25,8 @@ struct Image {
 };
 
 /// Draws a mesh with its edges, borders (red lines), irregular interior vertices (dots, red: fewer
-/// neighbours than regular, blue: more) and, in a quad mesh, tints its other faces; or the points
-/// of a cloud. Seen from behind, faces are red. A small software rasteriser: orthographic,
+/// neighbours than regular, blue: more) and tints on faces other than the regular kind; or the
+/// points of a cloud. Seen from behind, faces are red. A small software rasteriser: orthographic,
 /// z-buffered, antialiased. Edges and dots fade where they are too dense to be told apart. Throws
 /// Error for options that make no sense.
 Image draw_picture(const Mesh& mesh, const PictureOptions& options = {},

@@ -15,10 +15,10 @@ struct MeshStatistics {
   /// All vertices, isolated ones too; faces by their number of corners.
   std::size_t vertices = 0, faces = 0, triangles = 0, quads = 0, larger = 0;
   /// Not on a border and without the regular number of neighbours: 6 if more than 90 % of the faces
-  /// are triangles, else 4.
+  /// are triangles, 3 if more than half are hexagons, else 4.
   std::size_t irregular_vertices = 0;
-  /// Irregular vertices, and faces other than the prevailing kind: each polygon counts as the
-  /// irregular vertex that it becomes where the mesh is subdivided into quads.
+  /// Irregular vertices, and faces other than the prevailing kind: in a quad mesh, each of these
+  /// counts as the irregular vertex that it becomes when the mesh is subdivided into quads.
   std::size_t singularities = 0;
   double area_sigma = 0, area_min = 0, area_max = 0;
   double angle_sigma = 0;  ///< About the regular polygon's angle of each face.

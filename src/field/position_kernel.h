@@ -42,13 +42,12 @@ class PositionKernel {
   /// Eq. 7: running weighted mean of the neighbours' matched positions, rounded at the end.
   Vec3 relax(Index i, const Vec3* field) const {
     const Vec3 &x = graph_->positions[i], &n = graph_->normals[i];
-    const float rho = frame_->edge_length[i];
-    Vec3 mean = field[i];
+    PoSy<S> lattice = lattice_at(i, field);  // through the mean so far
+    Vec3& mean = lattice.p;
     float total = 0;
     for (Index e = graph_->offsets[i]; e < graph_->offsets[i + 1]; ++e) {
       const Index j = graph_->neighbors[e];
       const float w = graph_->weight(e);
-      const PoSy<S> lattice(mean, frame_->directions[i], n, rho);
       Vec3 own, other;
       if constexpr (E == PositionEnergy::extrinsic) {
         const PoSy<S> neighbor = lattice_at(j, field);

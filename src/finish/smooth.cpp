@@ -117,9 +117,11 @@ void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
       mesh.positions.swap(next);
       continue;
     }
-    context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) normals[v] = projector.normal(seeds[v]);
-    });
+    if (iteration % 4 == 1) {  // vertices move over the surface slowly
+      context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) normals[v] = projector.normal(seeds[v]);
+      });
+    }
     const float side = mean_side(mesh, options.relative_size);
     context.for_ranges(mesh.faces.size(), grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t f = begin; f < end; ++f) {

@@ -11,8 +11,8 @@ namespace {
 
 constexpr int bits = 21;  // an axis: 63 of the key's 64 bits
 
-/// Distance along the curve of a cell, by the transpose method of Skilling, "Programming the Hilbert
-/// curve" (AIP Conference Proceedings 707, 2004).
+/// Distance along the curve of a cell, by the transpose method of Skilling, "Programming the
+/// Hilbert curve" (AIP Conference Proceedings 707, 2004).
 std::uint64_t hilbert_key(std::array<std::uint32_t, 3> x) {
   for (std::uint32_t q = 1u << (bits - 1); q > 1; q >>= 1) {
     const std::uint32_t low = q - 1;
@@ -52,10 +52,10 @@ std::vector<Index> hilbert_order(std::span<const Vec3> points, const Context& co
   context.for_ranges(points.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3 cell = (points[i] - box.min()) * cells;
-      keys[i] = {hilbert_key({static_cast<std::uint32_t>(cell.x()),
-                              static_cast<std::uint32_t>(cell.y()),
-                              static_cast<std::uint32_t>(cell.z())}),
-                 static_cast<Index>(i)};
+      keys[i] = {
+          hilbert_key({static_cast<std::uint32_t>(cell.x()), static_cast<std::uint32_t>(cell.y()),
+                       static_cast<std::uint32_t>(cell.z())}),
+          static_cast<Index>(i)};
     }
   });
   context.run([&] { tbb::parallel_sort(keys); });
