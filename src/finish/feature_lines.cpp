@@ -68,6 +68,7 @@ std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& surface, double
     return sum;
   };
   auto creases = crease_edges(surface, degrees, context);
+  if (creases.empty()) return creases;
   const double sharp = length(creases);
   const double between = length(crease_edges(surface, degrees / 4, context)) - sharp;
   if (sharp <= between) creases.clear();

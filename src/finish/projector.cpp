@@ -7,10 +7,10 @@
 
 namespace meshgrain {
 
-Projector::Projector(const Mesh& surface, const Graph& graph)
+Projector::Projector(const Mesh& surface, const Graph& graph, const Context& context)
     : surface_(surface),
       graph_(graph),
-      around_(surface.is_point_cloud() ? VertexFaces{} : vertex_faces(surface)) {}
+      around_(surface.is_point_cloud() ? VertexFaces{} : vertex_faces(surface, context)) {}
 
 Vec3 Projector::nearest_around(const Vec3& p, Index vertex, Index& nearest_corner) const {
   Vec3 best = surface_.positions[vertex];

@@ -13,7 +13,7 @@ class Projector {
  public:
   /// `surface` is a triangle mesh, or the point cloud that `graph` was built on; both must outlive
   /// this.
-  Projector(const Mesh& surface, const Graph& graph);
+  Projector(const Mesh& surface, const Graph& graph, const Context& context);
 
   /// The point of the surface nearest to `p`. `seed` is where to start (a vertex of the surface),
   /// and becomes the one where the walk ended.

@@ -91,10 +91,10 @@ void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
   const auto evenness = static_cast<float>(options.evenness);
   Mesh& mesh = extraction.mesh;
   std::vector<Index>& seeds = extraction.nodes;
-  const Projector projector(surface, graph);
+  const Projector projector(surface, graph, context);
   const FeatureLines lines(surface, options.crease_degrees, context);
   Rails rails = attach_to_lines(extraction, surface, lines);
-  const VertexFaces around = vertex_faces(mesh);
+  const VertexFaces around = vertex_faces(mesh, context);
 
   const auto place = [&](const Vec3& p, std::size_t v) -> Vec3 {
     if (rails.seed[v] != no_index) {
