@@ -32,6 +32,9 @@ void check(const RemeshOptions& options) {
   if (options.edge_length < 0 || !std::isfinite(options.edge_length)) {
     throw Error("the target edge length must be a positive number");
   }
+  if (!(options.regularity >= 0 && options.regularity <= 1)) {
+    throw Error("the regularity must lie between 0 and 1");
+  }
   if (options.smoothing < 0) throw Error("the number of smoothing iterations must not be negative");
   if (options.solver.sweeps < 1) throw Error("at least one sweep a level is needed");
 }
@@ -235,10 +238,19 @@ class Pipeline {
     return solver->field();
   }
 
+  /// What regularity may cost (ExtractOptions): the lattice of pure quads is twice as coarse as
+  /// their edges, so that there the same cost bends the surface's grid over a longer way.
+  double cancelling_cost() const {
+    if (options_.regularity >= 1) return std::numeric_limits<double>::infinity();
+    const double least = options_.faces == OutputFaces::quads ? 2.5 : 5;
+    return least / std::pow(1 - options_.regularity, 1.5);
+  }
+
   Extraction extract(const PositionField& positions) {
     ExtractOptions extract;
     extract.energy = options_.position_energy;
     extract.manifold = options_.manifold;
+    extract.cancelling_cost = cancelling_cost();
     if (is_cloud_) {
       extract.largest_filled_gap = 12;  // a larger one may well be a hole
     } else if (nodes_are_vertices_) {

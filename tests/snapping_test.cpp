@@ -112,6 +112,7 @@ TEST(Snapping, ExtrinsicEdgesLieOnTheCreases) {
     RemeshOptions options;
     options.faces = OutputFaces::quad_dominant;
     options.edge_length = 3.3 * edge_lengths(mesh).mean;
+    options.regularity = 0;  // what the fields say, as they say it
     options.orientation_energy = orientation;
     options.position_energy = position;
     const Mesh result = remesh(mesh, options).mesh;
@@ -132,8 +133,8 @@ TEST(Snapping, ExtrinsicEdgesLieOnTheCreases) {
   };
   const double extrinsic = distance(OrientationEnergy::extrinsic, PositionEnergy::extrinsic);
   const double intrinsic = distance(OrientationEnergy::intrinsic, PositionEnergy::intrinsic);
-  // Measured 0.08 and 0.27 edge lengths.
-  EXPECT_LT(extrinsic, 0.11);
+  // Measured 0.12 and 0.30 edge lengths.
+  EXPECT_LT(extrinsic, 0.14);
   EXPECT_GT(intrinsic, 2 * extrinsic);
 }
 

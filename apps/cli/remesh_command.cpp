@@ -142,6 +142,9 @@ void add_options(CLI::App& app, Arguments& a) {
             ->check(CLI::IsMember({1, 2, 4, 6}))
             ->type_name("N"));
   faces(app.add_flag("--hexagons", a.hexagons, "hexagons: the dual of triangles"));
+  faces(app.add_option("--regularity", o.regularity,
+                       "0 (best shapes) to 1 (fewest irregular vertices) (0.5)")
+            ->type_name("X"));
   faces(app.add_flag("--manifold", o.manifold, "drop faces where the result is not manifold"));
 
   const auto follow = [&](CLI::Option* option) { option->group("What to follow"); };

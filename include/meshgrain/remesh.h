@@ -37,6 +37,9 @@ struct RemeshOptions {
   OrientationEnergy orientation_energy = OrientationEnergy::extrinsic;
   PositionEnergy position_energy = PositionEnergy::extrinsic;
   bool align_border = false;
+  /// From 0, the best shapes, to 1, the fewest irregular vertices: hardly more than the orientation
+  /// field has singularities.
+  double regularity = 0.5;
   CurvatureAlignment curvature;
   int smoothing = 60;     ///< Iterations of smooth() (0: only put onto the surface).
   bool manifold = false;  ///< Drop what is not manifold.

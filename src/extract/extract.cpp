@@ -5,9 +5,12 @@
 #include <map>
 #include <utility>
 
+#include "extract/cancel_singularities.h"
 #include "extract/clusters.h"
 #include "extract/drop_unused.h"
 #include "extract/face_repair.h"
+#include "extract/lattice_mesh.h"
+#include "extract/lattice_repair.h"
 #include "extract/mesh_clusters.h"
 #include "extract/polygon_map.h"
 #include "mesh/vertex_faces.h"
@@ -177,16 +180,16 @@ Extraction extract_from_mesh(const Graph& graph, const OrientationField& orienta
                              const Context& context) {
   CollapsedMesh collapsed =
       collapse_mesh(*options.surface, graph, orientation, position, options.energy, context);
-  FaceRepair repair(collapsed.map, collapsed.clusters, position.posy, std::move(collapsed.holes));
-  repair.contract_short_edges(position.edge_length, collapsed.clusters.cover);
-  for (int round = 0; round < 3; ++round) {
-    repair.flip_bad_triangles();
-    repair.untangle();
-  }
-  if (position.posy == 4) repair.remove_diagonals(collapsed.jumps);
+  LatticeMesh lattice(std::move(collapsed.lattice), std::move(collapsed.clusters), collapsed.roots,
+                      graph, orientation, position);
+  repair_lattice(lattice);
+  cancel_position_singularities(lattice, options.cancelling_cost);
+  repair_lattice(lattice);
+  FaceRepair repair(lattice.map, lattice.clusters, position.posy, std::move(lattice.holes));
+  if (position.posy == 4) repair.remove_diagonals(lattice.jumps);
   make_regular(repair, position.posy);
   std::vector<Index> vertex;
-  Extraction result = collect_faces(collapsed.map, repair, collapsed.clusters, vertex);
+  Extraction result = collect_faces(lattice.map, repair, lattice.clusters, vertex);
   if (!options.manifold) join_pieces(result, collapsed.meetings, vertex, context);
   return result;
 }

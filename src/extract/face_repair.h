@@ -5,6 +5,7 @@
 
 #include "extract/clusters.h"
 #include "extract/polygon_map.h"
+#include "field/jumps.h"
 
 namespace meshgrain {
 
@@ -29,28 +30,14 @@ class FaceRepair {
   void find_holes(std::span<const std::uint8_t> border_edges,
                   std::span<const std::uint8_t> border_vertices, std::size_t largest_gap);
 
-  // Triangles (triangle_repair.cpp).
-
-  /// Triangles only: contracts edges much shorter than the target, which lead to clusters of very
-  /// few nodes (the spurious ones of section 3.8) or hold two vertices of one lattice point apart.
-  void contract_short_edges(const EdgeLength& edge_length, const std::vector<float>& cover);
-
-  /// Triangles only: turns edges where that mends an inverted triangle or a needle.
-  void flip_bad_triangles();
-
-  /// Triangles only: where triangles are still turned over, moves their vertex into the middle of
-  /// its neighbours or contracts it into one of them, whichever leaves the best triangles.
-  void untangle();
-
   // Quads (quad_repair.cpp).
 
   /// Removes interior vertices with two edges, which no regular mesh has.
   void remove_doublets();
 
-  /// Quads: removes the edges between pairs of triangles that the lattice has as a square's
-  /// diagonal
-  /// (`jumps`: one an edge), the best squares first.
-  void remove_diagonals(std::span<const std::array<int, 2>> jumps);
+  /// Removes the edges between triangles that the lattice has as a square's diagonal (`jumps`: one
+  /// an edge). A triangle around a singularity may have two of them, and become a pentagon.
+  void remove_diagonals(std::span<const Jump> jumps);
 
   /// Quads: takes edges away, or turns them within the two faces beside them, as long as that
   /// leaves fewer irregular faces and vertices, the greatest gain first. So pairs of triangles
@@ -61,7 +48,9 @@ class FaceRepair {
   /// vertices.
   void close_quads();
 
-  /// Triangles: turns the edge between two of them as long as that leaves fewer irregular vertices.
+  // Triangles (triangle_repair.cpp).
+
+  /// Turns the edge between two triangles as long as that leaves fewer irregular vertices.
   void flip_edges();
 
   /// Splits faces with more corners than the symmetry allows along their best chords. A face of a
@@ -95,9 +84,6 @@ class FaceRepair {
   int closing_gain(Index h) const;
   int flip_gain(Index h) const;
   bool split_once(Index h);
-  double triangle_quality(Index a, Index b, Index c) const;
-  double star_quality(Index vertex) const;
-  double contracted_quality(Index h) const;
   void contract(Index h);
   void add_hub(Index h);
   void cut(Index a, Index b);

@@ -6,8 +6,6 @@
 #include <numeric>
 #include <tuple>
 
-#include "extract/link_condition.h"
-#include "field/jumps.h"
 #include "field/posy.h"
 
 namespace meshgrain {
@@ -21,8 +19,9 @@ class Collapse {
       : graph_(graph),
         orientation_(orientation),
         position_(position),
-        map_(surface, sources_, holes_, context),
-        merged_into_(map_.vertices()) {
+        lattice_{position.posy, {}, {}, {}} {
+    lattice_.map = PolygonMap(surface, sources_, holes_, context);
+    merged_into_.resize(map_.vertices());
     std::iota(merged_into_.begin(), merged_into_.end(), Index{0});
     rim_.assign(map_.vertices(), 0);
     for (Index h = 0; h < map_.halfedges(); ++h) {
@@ -76,36 +75,6 @@ class Collapse {
   CollapsedMesh result() &&;
 
  private:
-  Jump jump(Index h) const {
-    const Jump& stored = jumps_[h / 2];
-    return h % 2 == 0 ? stored : reversed(stored);
-  }
-
-  void set_jump(Index h, const Jump& jump) { jumps_[h / 2] = h % 2 == 0 ? jump : reversed(jump); }
-
-  /// The jump back, in the frame of the other end.
-  Jump reversed(const Jump& jump) const {
-    const auto t = rotate_jump(jump.t, jump.rotation, position_.posy);
-    return {(position_.posy - jump.rotation) % position_.posy, {-t[0], -t[1]}};
-  }
-
-  /// The jump a -> c by way of b, in the frame of a.
-  Jump composed(const Jump& ab, const Jump& bc) const {
-    const int posy = position_.posy;
-    const auto t = rotate_jump(bc.t, (posy - ab.rotation) % posy, posy);
-    return {(ab.rotation + bc.rotation) % posy, {ab.t[0] + t[0], ab.t[1] + t[1]}};
-  }
-
-  template <typename Body>
-  void for_each_leaving(Index v, const Body& body) const {
-    const Index start = map_.leaving(v);
-    Index h = start;
-    do {
-      body(h);
-      h = map_.around(h);
-    } while (h != start);
-  }
-
   /// How far a jump is from the real distance between two vertices, in edge lengths.
   float deviation(Index from, Index to, const std::array<int, 2>& t) const {
     const Index i = sources_[from], j = sources_[to];
@@ -123,36 +92,10 @@ class Collapse {
     // The smaller star moves.
     const auto valence = [&](Index v) { return map_.valence(v); };
     if (valence(map_.origin(h)) < valence(map_.target(h))) h = PolygonMap::twin(h);
-    const Index t = PolygonMap::twin(h), a = map_.origin(h), b = map_.origin(t);
-    const Jump ab = jump(h);
-    for_each_leaving(b, [&](Index g) {
-      if (g != t) set_jump(g, composed(ab, jump(g)));
+    const Index a = map_.origin(h), b = map_.target(h);
+    lattice_.collapse(h, [&](Index from, Index to, const Jump& x, const Jump& y) {
+      return deviation(from, to, x.t) < deviation(from, to, y.t);
     });
-    // The triangles on both sides lose the edge; of the two others of each one goes. Where their
-    // jumps disagree (the triangle is singular), the one that is nearer to the real distance stays.
-    const Index next_h = map_.next(h), prev_h = map_.prev(h);
-    const Index next_t = map_.next(t), prev_t = map_.prev(t);
-    const bool left = !holes_[h], right = !holes_[t];
-    struct Zip {
-      Index gone, kept;
-    };
-    const auto choose = [&](Index from_b, Index from_a, Index apex) -> Zip {
-      // Halfedges of the two edges, inside the triangle that vanishes.
-      const Jump of_b = map_.origin(from_b) == b ? jump(from_b) : jump(PolygonMap::twin(from_b));
-      const Jump of_a = map_.origin(from_a) == a ? jump(from_a) : jump(PolygonMap::twin(from_a));
-      const bool b_better =
-          of_a.t != of_b.t && deviation(a, apex, of_b.t) < deviation(a, apex, of_a.t);
-      return b_better ? Zip{from_a, from_b} : Zip{from_b, from_a};
-    };
-    Zip zips[2];
-    int count = 0;
-    if (left) zips[count++] = choose(next_h, prev_h, map_.target(next_h));
-    if (right) zips[count++] = choose(prev_t, next_t, map_.target(next_t));
-    map_.contract_edge(h);
-    for (int k = 0; k < count; ++k) {
-      holes_[zips[k].kept] = holes_[PolygonMap::twin(zips[k].gone)];
-      map_.remove_edge(zips[k].gone);
-    }
     merged_into_[b] = a;
   }
 
@@ -160,9 +103,10 @@ class Collapse {
   const OrientationField& orientation_;
   const PositionField& position_;
   std::vector<Index> sources_;
-  std::vector<std::uint8_t> holes_;
-  PolygonMap map_;
-  std::vector<Jump> jumps_;
+  JumpMap lattice_;
+  PolygonMap& map_ = lattice_.map;
+  std::vector<std::uint8_t>& holes_ = lattice_.holes;
+  std::vector<Jump>& jumps_ = lattice_.jumps;
   std::vector<Index> merged_into_;
   std::vector<std::uint8_t> rim_;  // for each vertex at the start, whether it was on a border
   LinkCondition link_;
@@ -201,20 +145,25 @@ CollapsedMesh Collapse::result() && {
     while (merged_into_[root] != root) root = merged_into_[root] = merged_into_[merged_into_[root]];
     cluster[v] = rank.vertices[root];
   }
-  std::vector<std::uint8_t> holes(map_.halfedges());
-  std::vector<std::array<int, 2>> jumps(map_.halfedges() / 2);
-  for (Index e = 0; e < rank.edges.size(); ++e) {
+  std::vector<Index> roots(rank.vertex_count);
+  for (Index v = 0; v < vertices; ++v) {
+    if (rank.vertices[v] != no_index) roots[rank.vertices[v]] = sources_[v];
+  }
+  for (Index e = 0; e < rank.edges.size(); ++e) {  // to lower places, in order
     const Index to = rank.edges[e];
     if (to == no_index) continue;
-    holes[2 * to] = holes_[2 * e];
-    holes[2 * to + 1] = holes_[2 * e + 1];
-    jumps[to] = jumps_[e].t;
+    holes_[2 * to] = holes_[2 * e];
+    holes_[2 * to + 1] = holes_[2 * e + 1];
+    jumps_[to] = jumps_[e];
   }
+  holes_.resize(map_.halfedges());
+  holes_.shrink_to_fit();
+  jumps_.resize(map_.halfedges() / 2);
+  jumps_.shrink_to_fit();
   Clusters clusters =
       average_clusters(graph_, position_, sources_, cluster, rim_, rank.vertex_count);
   auto meetings = find_meetings(sources_, cluster, graph_.size());
-  return {std::move(map_), std::move(clusters), std::move(holes), std::move(meetings),
-          std::move(jumps)};
+  return {std::move(lattice_), std::move(clusters), std::move(roots), std::move(meetings)};
 }
 
 }  // namespace

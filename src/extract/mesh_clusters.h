@@ -1,22 +1,20 @@
 #pragma once
 
 #include "extract/clusters.h"
-#include "extract/polygon_map.h"
+#include "extract/jump_map.h"
 
 namespace meshgrain {
 
 /// What a triangle mesh shrinks to when all of its edges with zero jump are collapsed.
 struct CollapsedMesh {
-  PolygonMap map;                   // triangles
-  Clusters clusters;                // of the vertices of `map` (edges and border left empty)
-  std::vector<std::uint8_t> holes;  // for each halfedge of `map`, whether it lies outside
+  JumpMap lattice;
+  Clusters clusters;         // of the vertices (edges and border left empty)
+  std::vector<Index> roots;  // the node whose frame is that of the vertex
   /// Pairs of clusters that share a vertex of the surface, at which it was cut, with how many.
   struct Meeting {
     Index a, b, count;
   };
   std::vector<Meeting> meetings;
-  std::vector<std::array<int, 2>>
-      jumps;  // of each edge, in the frame of its even halfedge's origin
 };
 
 /// Collapses the edges of the mesh itself, shortest first, where their jump is zero and the link

@@ -239,6 +239,26 @@ void PolygonMap::contract_edge(Index h) {
   origin_[h] = origin_[t] = no_index;
 }
 
+Index PolygonMap::split_edge(Index h) {
+  const Index t = twin(h), old = origin_[t];
+  const auto fresh = static_cast<Index>(leaving_.size());
+  const auto out = static_cast<Index>(origin_.size()), back = out + 1;
+  const Index after = next_[h], before = prev_[t];
+  origin_.insert(origin_.end(), {fresh, old});
+  next_.insert(next_.end(), {after == t ? back : after, t});
+  prev_.insert(prev_.end(), {h, before == h ? out : before});
+  next_[h] = out;
+  prev_[t] = back;
+  if (after != t) {
+    prev_[after] = out;
+    next_[before] = back;
+  }
+  origin_[t] = fresh;
+  leaving_.push_back(out);
+  if (leaving_[old] == t) leaving_[old] = back;
+  return out;
+}
+
 Index PolygonMap::split_vertex(Index a, Index b) {
   const auto fresh = static_cast<Index>(leaving_.size());
   const Index old = origin_[a], ap = prev_[a], bp = prev_[b];

@@ -14,6 +14,7 @@ namespace meshgrain {
 /// a face on either side. Halfedges h and h ^ 1 are the two sides of an edge.
 class PolygonMap {
  public:
+  PolygonMap() = default;
   /// The edges around a vertex are ordered by angle in its tangent plane.
   PolygonMap(std::span<const Vec3> positions, std::span<const Vec3> normals,
              std::span<const std::array<Index, 2>> edges);
@@ -52,6 +53,9 @@ class PolygonMap {
   /// Merges the target of `h` into its origin; the edge vanishes, and the orbits on its sides lose
   /// it.
   void contract_edge(Index h);
+  /// Puts a new vertex on an edge: h then ends there, and the halfedge from there to the old target
+  /// is returned. The new vertex has the highest number.
+  Index split_edge(Index h);
   /// Cuts the vertex that two halfedges leave in two: the edges from `a` clockwise up to `b` go to
   /// a new vertex, which is returned. If `a` and `b` were in one orbit it becomes two, else theirs
   /// become one.

@@ -49,20 +49,30 @@ double FaceRepair::removal_cost(Index h) const {
   return has_repeats(corners) ? 1e30 : polygon_cost(corners);
 }
 
-void FaceRepair::remove_diagonals(std::span<const std::array<int, 2>> jumps) {
-  std::vector<std::pair<double, Index>> candidates;
-  for (Index h = 0; h < 2 * jumps.size(); h += 2) {
-    const auto& t = jumps[h / 2];
-    if (std::abs(t[0]) != 1 || std::abs(t[1]) != 1) continue;
-    if (map_.removed(h) || hole_[h] || hole_[h + 1]) continue;
-    const double cost = removal_cost(h);
-    if (cost < 1e9) candidates.emplace_back(cost, h);
+void FaceRepair::remove_diagonals(std::span<const Jump> jumps) {
+  const auto is_diagonal = [&](Index h) {
+    const auto& t = jumps[h / 2].t;
+    return std::abs(t[0]) == 1 && std::abs(t[1]) == 1;
+  };
+  const auto inner = [&](Index h) { return !map_.removed(h) && !hole_[h] && !hole_[h ^ 1]; };
+  // Diagonals of a triangle; one that is half of a square has one.
+  std::vector<std::uint8_t> count(map_.halfedges(), 0);
+  for (Index h = 0; h < map_.halfedges(); ++h) {
+    if (map_.removed(h) || hole_[h]) continue;
+    for (Index g : {h, map_.next(h), map_.prev(h)}) count[h] += is_diagonal(g);
   }
-  std::sort(candidates.begin(), candidates.end());
-  for (const auto& [cost, h] : candidates) {
-    if (map_.degree(h) != 3 || map_.degree(h + 1) != 3) continue;
-    if (map_.valence(map_.origin(h)) <= 3 || map_.valence(map_.target(h)) <= 3) continue;
-    if (removal_cost(h) < 1e9) map_.remove_edge(h);
+  const auto remove = [&](Index h, std::size_t most) {
+    if (map_.degree(h) + map_.degree(h + 1) - 2 > most) return;
+    if (map_.valence(map_.origin(h)) <= 3 || map_.valence(map_.target(h)) <= 3) return;
+    std::vector<Index> corners = union_halfedges(h);
+    for (Index& corner : corners) corner = map_.origin(corner);
+    if (!has_repeats(corners)) map_.remove_edge(h);
+  };
+  for (const int most : {2, 3, 4}) {
+    for (Index h = 0; h < 2 * jumps.size(); h += 2) {
+      if (!inner(h) || !is_diagonal(h)) continue;
+      if (count[h] + count[h + 1] <= most) remove(h, most == 2 ? 4 : 5);
+    }
   }
 }
 

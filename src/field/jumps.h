@@ -25,6 +25,12 @@ inline bool is_unit(const std::array<int, 2>& t, int posy) {
 /// Turns a lattice vector by `rotation` steps of 360 / posy degrees.
 std::array<int, 2> rotate_jump(std::array<int, 2> t, int rotation, int posy);
 
+/// The jump back, in the frame of the other end.
+Jump reversed(const Jump& jump, int posy);
+
+/// The jump a -> c by way of b, in the frame of a.
+Jump composed(const Jump& ab, const Jump& bc, int posy);
+
 /// The jump from node i to node j, by the matching of the given energy.
 Jump edge_jump(const Graph& graph, const OrientationField& orientation,
                const PositionField& position, PositionEnergy energy, Index i, Index j);

@@ -85,9 +85,10 @@ float mean_side(const Mesh& mesh, const EdgeLength& relative) {
 void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
             const SmoothOptions& options, const Context& context) {
   constexpr std::size_t grain = 1024;
-  // Steps a little longer than to the mean converge in fewer iterations; beyond 2 they would
-  // diverge.
-  constexpr float overrelaxation = 1.5f;
+  // Each step goes on in part where the last one went (Polyak's heavy ball): faults that reach far
+  // then fade in as many iterations as they are edges wide, rather than in the square of that.
+  constexpr float momentum = 0.9f;
+  std::vector<Vec3> previous;
   const auto evenness = static_cast<float>(options.evenness);
   Mesh& mesh = extraction.mesh;
   std::vector<Index>& seeds = extraction.nodes;
@@ -149,9 +150,12 @@ void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
         }
         const auto count = static_cast<float>(around[v].size());
         const Vec3& p = mesh.positions[v];
-        next[v] = place(count > 0 ? Vec3(p + overrelaxation * (sum / count - p)) : p, v);
+        Vec3 step = count > 0 ? Vec3(sum / count - p) : Vec3(Vec3::Zero());
+        if (iteration > 2) step += momentum * (p - previous[v]);
+        next[v] = place(p + step, v);
       }
     });
+    previous = mesh.positions;
     mesh.positions.swap(next);
   }
 }

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "extract/link_condition.h"
+#include "extract/polygon_map.h"
+#include "field/jumps.h"
+
+namespace meshgrain {
+
+/// Triangles with an integer jump on every edge: what a position field says about a surface. The
+/// jumps around a triangle add up to nothing, except where it holds a singularity.
+struct JumpMap {
+  int posy = 4;
+  PolygonMap map;
+  std::vector<std::uint8_t> holes;  // for each halfedge, whether it lies outside
+  std::vector<Jump> jumps;          // of each edge, in the frame of its even halfedge's origin
+
+  Jump jump(Index h) const {
+    const Jump& stored = jumps[h / 2];
+    return h % 2 == 0 ? stored : reversed(stored, posy);
+  }
+  void set_jump(Index h, const Jump& jump) {
+    jumps[h / 2] = h % 2 == 0 ? jump : reversed(jump, posy);
+  }
+
+  /// The jumps around the triangle left of h, added up in the frame of h's origin: a rotation if it
+  /// holds a singularity of the orientation field, else the Burgers vector of its position
+  /// singularity.
+  Jump sum(Index h) const {
+    const Index g = map.next(h);
+    return composed(composed(jump(h), jump(g), posy), jump(map.next(g)), posy);
+  }
+
+  template <typename Body>
+  void for_each_leaving(Index v, const Body& body) const {
+    const Index start = map.leaving(v);
+    Index h = start;
+    do {
+      body(h);
+      h = map.around(h);
+    } while (h != start);
+  }
+
+  /// Contracts h, whose target vanishes; the edges that left it now leave its origin. The triangles
+  /// on both sides lose two edges to one: `is_better(from, to, a, b)` says whether jump a rather
+  /// than jump b should stay between two vertices where they disagree, as they do if the triangle
+  /// is singular.
+  template <typename IsBetter>
+  void collapse(Index h, const IsBetter& is_better) {
+    const Index t = PolygonMap::twin(h), a = map.origin(h), b = map.origin(t);
+    const Jump ab = jump(h);
+    for_each_leaving(b, [&](Index g) {
+      if (g != t) set_jump(g, composed(ab, jump(g), posy));
+    });
+    const Index next_h = map.next(h), prev_h = map.prev(h);
+    const Index next_t = map.next(t), prev_t = map.prev(t);
+    const bool left = !holes[h], right = !holes[t];
+    struct Zip {
+      Index gone, kept;
+    };
+    // Halfedges of the two edges, inside the triangle that vanishes.
+    const auto choose = [&](Index from_b, Index from_a, Index apex) -> Zip {
+      const Jump of_b = map.origin(from_b) == b ? jump(from_b) : jump(PolygonMap::twin(from_b));
+      const Jump of_a = map.origin(from_a) == a ? jump(from_a) : jump(PolygonMap::twin(from_a));
+      const bool b_better = of_a.t != of_b.t && is_better(a, apex, of_b, of_a);
+      return b_better ? Zip{from_a, from_b} : Zip{from_b, from_a};
+    };
+    Zip zips[2];
+    int count = 0;
+    if (left) zips[count++] = choose(next_h, prev_h, map.target(next_h));
+    if (right) zips[count++] = choose(prev_t, next_t, map.target(next_t));
+    map.contract_edge(h);
+    for (int k = 0; k < count; ++k) {
+      holes[zips[k].kept] = holes[PolygonMap::twin(zips[k].gone)];
+      map.remove_edge(zips[k].gone);
+    }
+  }
+};
+
+}  // namespace meshgrain

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "extract/clusters.h"
+#include "extract/jump_map.h"
+#include "extract/lattice_triangle.h"
+
+namespace meshgrain {
+
+/// A coarse triangle mesh that knows where each of its vertices lies in the lattice of its
+/// neighbours: the jumps of a position field over the clusters of its lattice points. Where no
+/// triangle is singular it is a map of the surface into the plane, with vertices at integers.
+class LatticeMesh : public JumpMap {
+ public:
+  /// `roots`: for each vertex the node in whose frame its jumps are.
+  LatticeMesh(JumpMap&& shrunk, Clusters&& clusters_of_vertices, std::span<const Index> roots,
+              const Graph& graph, const OrientationField& orientation,
+              const PositionField& position);
+
+  Clusters clusters;
+
+  LatticeMetric metric() const { return {posy}; }
+  /// The squared length of an edge in the lattice.
+  double squared_length(Index h) const { return metric().squared_length(jumps[h / 2].t); }
+
+  /// The triangle left of h, from h's origin on.
+  LatticeTriangle triangle(Index h) const {
+    return {posy, {jump(h), jump(map.next(h)), jump(map.prev(h))}};
+  }
+  /// Whether h has a triangle on its left, and is the halfedge that stands for it.
+  bool stands_for_triangle(Index h) const {
+    return !map.removed(h) && !holes[h] && h < map.next(h) && h < map.prev(h);
+  }
+
+  /// How far (squared, in edge lengths) a jump of h would be from the real distance of its ends.
+  double misfit(Index h, const std::array<int, 2>& t) const;
+
+  /// The angle in the lattice around a vertex: a full turn where all is well, but for the apex of a
+  /// cone.
+  double total_angle(Index vertex) const;
+
+  bool may_flip(Index h) const;
+  /// Turns the edge of h to the other diagonal of its two triangles, with the jump by way of h's
+  /// origin: the triangle there becomes plane, and what the two held is in the other.
+  void flip(Index h);
+  /// The jump that flip(h) gives, from the apex on the side of h.
+  Jump flipped_jump(Index h) const;
+
+  bool may_collapse(Index h);
+  /// The target of h vanishes.
+  void collapse_edge(Index h);
+
+  /// A new vertex on the edge of h, at `t` from its origin.
+  void split(Index h, const std::array<int, 2>& t);
+  /// A new vertex in the triangle left of h, at `t` from h's origin. `to_apex` is the jump from
+  /// there to the corner opposite of h.
+  void insert(Index h, const std::array<int, 2>& t, const Jump& to_apex);
+
+  /// Moves a vertex by a lattice vector: only the numbers change.
+  void shift(Index vertex, const std::array<int, 2>& t);
+
+ private:
+  LatticePoint coordinates(const Vec3& d, Index vertex) const;
+  void add_vertex(Index like, const Vec3& position, bool on_border);
+  void add_edge(Index from, Index to, const Jump& jump);
+
+  std::vector<Vec3> directions_;
+  std::vector<float> lengths_;
+  LinkCondition link_;
+};
+
+}  // namespace meshgrain

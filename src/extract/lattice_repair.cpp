@@ -1,0 +1,386 @@
+#include "extract/lattice_repair.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <span>
+
+namespace meshgrain {
+namespace {
+
+constexpr double least_gain = 1e-6;
+
+/// A triangle of the mesh as it is or as it might become. A corner that is not there yet has no
+/// index.
+struct Piece {
+  std::array<Index, 3> corners;
+  LatticeTriangle lattice;
+};
+
+double flaws(std::span<const Piece> pieces) {
+  double sum = 0;
+  for (const Piece& piece : pieces) sum += piece.lattice.flaw();
+  return sum;
+}
+
+class LatticeRepair {
+ public:
+  explicit LatticeRepair(LatticeMesh& lattice) : lattice_(lattice), map_(lattice.map) {}
+
+  void run() {
+    // Each kind of change lowers what it looks at; the bound is for those that work against each
+    // other.
+    constexpr int rounds = 30;
+    for (int round = 0; round < rounds; ++round) {
+      bool changed = collapse_zero_edges();
+      changed = flip_edges() || changed;
+      changed = swing_edges() || changed;
+      if (changed || shift_vertices() || collapse_flawed() || fill_in()) continue;
+      return;
+    }
+  }
+
+ private:
+  Piece piece(Index h) const {
+    return {{map_.origin(h), map_.target(h), map_.target(map_.next(h))}, lattice_.triangle(h)};
+  }
+
+  void star(Index v, std::vector<Piece>& pieces) const {
+    pieces.clear();
+    lattice_.for_each_leaving(v, [&](Index h) {
+      if (!lattice_.holes[h]) pieces.push_back(piece(h));
+    });
+  }
+
+  /// Whether every vertex keeps its angle in the lattice when some triangles take the place of
+  /// others, or gets the one that it should have. Else a star could come to go around twice though
+  /// none of its triangles is turned over. `gone` is not looked at.
+  bool keeps_angles(std::span<const Piece> before, std::span<const Piece> after,
+                    Index gone = no_index) {
+    changes_.clear();
+    const auto add = [&](const Piece& piece, double sign) {
+      for (int k = 0; k < 3; ++k) {
+        const Index v = piece.corners[k];
+        auto it = std::find_if(changes_.begin(), changes_.end(),
+                               [&](const Change& change) { return change.vertex == v; });
+        if (it == changes_.end()) it = changes_.insert(it, {v, 0});
+        it->angle += sign * piece.lattice.angle(k);
+      }
+    };
+    for (const Piece& piece : before) add(piece, -1);
+    for (const Piece& piece : after) add(piece, 1);
+    constexpr double tolerance = 1e-3;
+    return std::all_of(changes_.begin(), changes_.end(), [&](const Change& change) {
+      const Index v = change.vertex;
+      if (v == gone || v == no_index || std::abs(change.angle) < tolerance) return true;
+      if (lattice_.clusters.on_border[v]) return true;
+      const double angle = lattice_.total_angle(v) + change.angle;
+      return std::abs(angle - full_angle(v, after)) < tolerance;
+    });
+  }
+
+  /// A full turn, unless the vertex is the apex of one of its triangles.
+  static double full_angle(Index v, std::span<const Piece> pieces) {
+    for (const Piece& piece : pieces) {
+      if (!piece.lattice.is_cone()) continue;
+      for (int k = 0; k < 3; ++k) {
+        if (piece.corners[k] == v && piece.lattice.sum(k).is_zero()) {
+          return piece.lattice.apex_angle();
+        }
+      }
+    }
+    return 2 * std::numbers::pi;
+  }
+
+  bool collapse_zero_edges() {
+    bool any = false;
+    for (bool again = true; again;) {
+      again = false;
+      for (Index h = 0; h < map_.halfedges(); ++h) {
+        if (map_.removed(h) || !lattice_.jumps[h / 2].is_zero()) continue;
+        // Whoever covers more of the surface stays, on the border whoever lies there.
+        const Index a = map_.origin(h), b = map_.target(h);
+        const auto& [cover, border] =
+            std::tie(lattice_.clusters.cover, lattice_.clusters.on_border);
+        const bool stays = border[a] != border[b] ? border[a] : cover[a] >= cover[b];
+        const Index into = stays ? h : PolygonMap::twin(h);
+        if (!lattice_.may_collapse(into)) continue;
+        lattice_.collapse_edge(into);
+        again = any = true;
+      }
+    }
+    return any;
+  }
+
+  bool flip_edges() {
+    bool any = false;
+    for (bool again = true; again;) {
+      again = false;
+      const auto count = static_cast<Index>(map_.halfedges());
+      for (Index h = 0; h < count; h += 2) {
+        if (!lattice_.may_flip(h)) continue;
+        // The new edge may take its jump by way of either end of the old one.
+        const double by_origin = flip_gain(h), by_target = flip_gain(h + 1);
+        const Index better = by_origin >= by_target ? h : h + 1;
+        for (const Index side : {better, PolygonMap::twin(better)}) {
+          if (std::max(by_origin, by_target) < least_gain) break;
+          if ((side == h ? by_origin : by_target) < least_gain || !flip_keeps_angles(side))
+            continue;
+          lattice_.flip(side);
+          again = any = true;
+          break;
+        }
+      }
+    }
+    return any;
+  }
+
+  /// The two triangles that flip(h) leaves: by the origin of h, and by its target.
+  std::array<Piece, 2> flipped(Index h) const {
+    const int posy = lattice_.posy;
+    const Index t = PolygonMap::twin(h);
+    const Index a = map_.origin(h), b = map_.target(h);
+    const Index c = map_.target(map_.next(h)), d = map_.target(map_.next(t));
+    const Jump cd = lattice_.flipped_jump(h), dc = reversed(cd, posy);
+    const Jump bc = lattice_.jump(map_.next(h)), ca = lattice_.jump(map_.prev(h));
+    const Jump ad = lattice_.jump(map_.next(t)), db = lattice_.jump(map_.prev(t));
+    return {{{{a, d, c}, {posy, {ad, dc, ca}}}, {{d, b, c}, {posy, {db, bc, cd}}}}};
+  }
+
+  double flip_gain(Index h) const {
+    const std::array<Piece, 2> before{piece(h), piece(PolygonMap::twin(h))};
+    const int left = before[0].lattice.sum().rotation, right = before[1].lattice.sum().rotation;
+    // Two singularities in one triangle would be one of higher index.
+    if (left != 0 && right != 0 && left + right != lattice_.posy) return -1;
+    return flaws(before) + lattice_.squared_length(h) - flaws(flipped(h)) -
+           lattice_.metric().squared_length(lattice_.flipped_jump(h).t);
+  }
+
+  bool flip_keeps_angles(Index h) {
+    const std::array<Piece, 2> before{piece(h), piece(PolygonMap::twin(h))};
+    return keeps_angles(before, flipped(h));
+  }
+
+  /// An edge of a cone may pass the apex on either side. Gives it the jump by way of the other two
+  /// edges where that is better; the apex is then in the triangle beyond.
+  bool swing_edges() {
+    bool any = false;
+    const int posy = lattice_.posy;
+    for (Index h = 0; h < map_.halfedges(); ++h) {
+      const Index t = PolygonMap::twin(h);
+      if (map_.removed(h) || lattice_.holes[h] || lattice_.holes[t]) continue;
+      const std::array<Piece, 2> before{piece(h), piece(t)};
+      if (!before[0].lattice.is_cone() || before[1].lattice.is_cone()) continue;
+      const Jump back = composed(before[0].lattice.around[1], before[0].lattice.around[2], posy);
+      std::array<Piece, 2> after = before;
+      after[0].lattice.around[0] = reversed(back, posy);
+      after[1].lattice.around[0] = back;
+      const double gain = flaws(before) - flaws(after) + lattice_.squared_length(h) -
+                          lattice_.metric().squared_length(back.t);
+      if (gain < least_gain || !keeps_angles(before, after)) continue;
+      lattice_.set_jump(t, back);
+      any = true;
+    }
+    return any;
+  }
+
+  /// Gives vertices with flawed triangles another place in the lattice.
+  bool shift_vertices() {
+    bool any = false;
+    for (Index v = 0; v < map_.vertices(); ++v) {
+      if (map_.leaving(v) == no_index) continue;
+      star(v, before_);
+      double least = flaws(before_);
+      if (least == 0) continue;
+      least -= least_gain;
+      std::array<int, 2> best{0, 0};
+      constexpr int reach = 2;
+      for (int x = -reach; x <= reach; ++x) {
+        for (int y = -reach; y <= reach; ++y) {
+          lattice_.shift(v, {x, y});
+          star(v, after_);
+          lattice_.shift(v, {-x, -y});
+          const double left = flaws(after_);
+          if (left >= least || !keeps_angles(before_, after_)) continue;
+          least = left;
+          best = {x, y};
+        }
+      }
+      if (best == std::array<int, 2>{0, 0}) continue;
+      lattice_.shift(v, best);
+      any = true;
+    }
+    return any;
+  }
+
+  /// Takes vertices with flawed triangles away, into the neighbour where that leaves the least.
+  bool collapse_flawed() {
+    bool any = false;
+    for (Index v = 0; v < map_.vertices(); ++v) {
+      if (map_.leaving(v) == no_index) continue;
+      star(v, before_);
+      double least = flaws(before_);
+      if (least == 0) continue;
+      least -= least_gain;
+      Index best = no_index;
+      lattice_.for_each_leaving(v, [&](Index g) {
+        const Index into = PolygonMap::twin(g);
+        if (!lattice_.may_collapse(into)) return;
+        collapsed_star(into, after_);
+        const double left = flaws(after_);
+        if (left >= least || !keeps_angles(before_, after_, v)) return;
+        least = left;
+        best = into;
+      });
+      if (best == no_index) continue;
+      lattice_.collapse_edge(best);
+      any = true;
+    }
+    return any;
+  }
+
+  /// The triangles around the target of h once that is at h's origin.
+  void collapsed_star(Index h, std::vector<Piece>& pieces) const {
+    const Index t = PolygonMap::twin(h), a = map_.origin(h);
+    const int posy = lattice_.posy;
+    const Jump ab = lattice_.jump(h), ba = reversed(ab, posy);
+    pieces.clear();
+    for (Index g = map_.around(t); g != t; g = map_.around(g)) {
+      if (lattice_.holes[g]) continue;
+      Piece moved = piece(g);
+      if (moved.corners[1] == a || moved.corners[2] == a) continue;
+      moved.corners[0] = a;
+      auto& around = moved.lattice.around;
+      around[0] = composed(ab, around[0], posy);
+      around[2] = composed(around[2], ba, posy);
+      pieces.push_back(moved);
+    }
+  }
+
+  /// Puts vertices at lattice points that have none.
+  bool fill_in() {
+    bool any = false;
+    auto count = static_cast<Index>(map_.halfedges());
+    for (Index h = 0; h < count; h += 2) {
+      if (map_.removed(h)) continue;
+      const auto t = lattice_.jump(h).t;
+      const int parts = std::gcd(t[0], t[1]);
+      if (parts < 2) continue;
+      const int first = parts / 2;
+      lattice_.split(h, {t[0] / parts * first, t[1] / parts * first});
+      any = true;
+    }
+    if (any) return true;
+    count = static_cast<Index>(map_.halfedges());
+    for (Index h = 0; h < count; ++h) {
+      if (!lattice_.stands_for_triangle(h)) continue;
+      const LatticeTriangle triangle = lattice_.triangle(h);
+      if (triangle.is_cone()) {
+        any = (triangle.flaw() == 0 && fill_cone(h)) || any;
+      } else if (triangle.is_plane() && triangle.area() > 2.5) {
+        any = fill_plane(h) || any;
+      }
+    }
+    return any;
+  }
+
+  /// The lattice point inside of the triangle between h and the point `top` (both from h's origin)
+  /// that is nearest to `goal`; on the sides towards the top counts as inside. Returns its squared
+  /// distance.
+  double nearest_inside(Index h, const LatticePoint& top, const LatticePoint& goal,
+                        std::array<int, 2>& best) const {
+    const auto b = lattice_.jump(h).t;
+    const auto low = [&](int k) {
+      return static_cast<int>(std::floor(std::min({0.0, top[k], static_cast<double>(b[k])})));
+    };
+    const auto high = [&](int k) {
+      return static_cast<int>(std::ceil(std::max({0.0, top[k], static_cast<double>(b[k])})));
+    };
+    double nearest = 1e30;
+    for (int x = low(0); x <= high(0); ++x) {
+      for (int y = low(1); y <= high(1); ++y) {
+        if ((x == 0 && y == 0) || (x == b[0] && y == b[1])) continue;
+        const double over_edge = b[0] * y - b[1] * x;
+        const double over_right = (top[0] - b[0]) * (y - b[1]) - (top[1] - b[1]) * (x - b[0]);
+        const double over_left = -top[0] * y + top[1] * x;
+        if (over_edge <= 0 || over_right < 0 || over_left < 0) continue;
+        const double distance =
+            lattice_.metric().squared_length(LatticePoint{x - goal[0], y - goal[1]});
+        if (distance >= nearest) continue;
+        nearest = distance;
+        best = {x, y};
+      }
+    }
+    return nearest;
+  }
+
+  bool fill_plane(Index h) {
+    const auto b = lattice_.jump(h).t;
+    const Jump ac = composed(lattice_.jump(h), lattice_.jump(map_.next(h)), lattice_.posy);
+    const LatticePoint c{static_cast<double>(ac.t[0]), static_cast<double>(ac.t[1])};
+    std::array<int, 2> t{0, 0};
+    if (nearest_inside(h, c, {(b[0] + c[0]) / 3, (b[1] + c[1]) / 3}, t) > 1e29) return false;
+    if (t == ac.t) return false;
+    lattice_.insert(h, t, composed(reversed(Jump{0, t}, lattice_.posy), ac, lattice_.posy));
+    return true;
+  }
+
+  /// In a cone, the lattice point nearest to the apex.
+  bool fill_cone(Index h) {
+    double nearest = 1e30;
+    Index edge = no_index;
+    std::array<int, 2> t{0, 0};
+    Index g = h;
+    for (int side = 0; side < 3; ++side, g = map_.next(g)) {
+      const LatticePoint apex = lattice_.triangle(g).apex();
+      std::array<int, 2> found{0, 0};
+      const double distance = nearest_inside(g, apex, apex, found);
+      if (distance >= nearest) continue;
+      nearest = distance;
+      edge = g;
+      t = found;
+    }
+    if (edge == no_index) return false;
+    // Of the three new triangles that on the edge is plane, and one of the others: the jump to the
+    // corner beyond may go by either end of the edge.
+    const int posy = lattice_.posy;
+    const Piece whole = piece(edge);
+    const auto [a, b, c] = whole.corners;
+    const auto& [ab, bc, ca] = whole.lattice.around;
+    const Jump ax{0, t}, xa = reversed(ax, posy), xb = composed(xa, ab, posy);
+    double least = 3;
+    const Jump* best = nullptr;
+    const Jump ways[2] = {composed(xb, bc, posy), composed(xa, reversed(ca, posy), posy)};
+    for (const Jump& xc : ways) {
+      const std::array<Piece, 3> parts{{{{a, b, no_index}, {posy, {ab, reversed(xb, posy), xa}}},
+                                        {{b, c, no_index}, {posy, {bc, reversed(xc, posy), xb}}},
+                                        {{c, a, no_index}, {posy, {ca, ax, xc}}}}};
+      const double cost = flaws(parts) + 0.01 * lattice_.metric().squared_length(xc.t);
+      if (cost >= least || !keeps_angles({&whole, 1}, parts)) continue;
+      least = cost;
+      best = &xc;
+    }
+    if (best == nullptr) return false;
+    lattice_.insert(edge, t, *best);
+    return true;
+  }
+
+  LatticeMesh& lattice_;
+  const PolygonMap& map_;
+  std::vector<Piece> before_, after_;
+  struct Change {
+    Index vertex;
+    double angle;
+  };
+  std::vector<Change> changes_;
+};
+
+}  // namespace
+
+void repair_lattice(LatticeMesh& lattice) {
+  LatticeRepair(lattice).run();
+}
+
+}  // namespace meshgrain

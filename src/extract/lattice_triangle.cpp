@@ -1,0 +1,121 @@
+#include "extract/lattice_triangle.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace meshgrain {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double rounding = 1e-9;
+
+double cross(const LatticePoint& a, const LatticePoint& b) {
+  return a[0] * b[1] - a[1] * b[0];
+}
+
+LatticePoint point(const std::array<int, 2>& t) {
+  return {static_cast<double>(t[0]), static_cast<double>(t[1])};
+}
+
+LatticePoint operator-(const LatticePoint& a, const LatticePoint& b) {
+  return {a[0] - b[0], a[1] - b[1]};
+}
+
+/// x with x = t + rotate(x, -rotation).
+LatticePoint fixed_point(const Jump& sum, int posy) {
+  const auto u = rotate_jump({1, 0}, posy - sum.rotation, posy);
+  const auto v = rotate_jump({0, 1}, posy - sum.rotation, posy);
+  const int a = 1 - u[0], b = -v[0], c = -u[1], d = 1 - v[1];
+  const double determinant = a * d - b * c;
+  return {(d * sum.t[0] - b * sum.t[1]) / determinant, (a * sum.t[1] - c * sum.t[0]) / determinant};
+}
+
+/// The corners of a cone as they unroll around its apex, which is at zero; the last is the first
+/// again.
+std::array<LatticePoint, 4> unroll(const LatticeTriangle& cone) {
+  const LatticePoint apex = cone.apex();
+  const Jump ab = cone.around[0], ac = composed(ab, cone.around[1], cone.posy);
+  return {LatticePoint{0, 0} - apex, point(ab.t) - apex, point(ac.t) - apex,
+          point(cone.sum().t) - apex};
+}
+
+}  // namespace
+
+double LatticeMetric::squared_length(const LatticePoint& a) const {
+  return a[0] * a[0] + a[1] * a[1] + (posy == 6 ? a[0] * a[1] : 0);
+}
+
+double LatticeMetric::squared_length(const std::array<int, 2>& t) const {
+  return squared_length(point(t));
+}
+
+double LatticeMetric::angle(const LatticePoint& a, const LatticePoint& b) const {
+  const double sine = cross(a, b), cosine = a[0] * b[0] + a[1] * b[1];
+  return posy == 4 ? std::atan2(sine, cosine)
+                   : std::atan2(sine * std::sqrt(0.75), cosine + (a[0] * b[1] + a[1] * b[0]) / 2);
+}
+
+Jump LatticeTriangle::sum(int corner) const {
+  return composed(composed(around[corner], around[(corner + 1) % 3], posy),
+                  around[(corner + 2) % 3], posy);
+}
+
+LatticePoint LatticeTriangle::apex(int corner) const {
+  return fixed_point(sum(corner), posy);
+}
+
+double LatticeTriangle::apex_angle() const {
+  const int rotation = sum().rotation;
+  return 2 * pi *
+         (1 - static_cast<double>(2 * rotation > posy ? rotation - posy : rotation) / posy);
+}
+
+double LatticeTriangle::area() const {
+  if (is_cone()) {
+    const auto corners = unroll(*this);
+    return cross(corners[0], corners[1]) + cross(corners[1], corners[2]) +
+           cross(corners[2], corners[3]);
+  }
+  const auto seen_from = [&](int corner) {
+    const Jump& first = around[corner];
+    return cross(point(first.t), point(composed(first, around[(corner + 1) % 3], posy).t));
+  };
+  return is_plane() ? seen_from(0) : (seen_from(0) + seen_from(1) + seen_from(2)) / 3;
+}
+
+double LatticeTriangle::angle(int corner) const {
+  const LatticeMetric metric{posy};
+  const Jump& to_next = around[corner];
+  const LatticePoint from = point(to_next.t);
+  const LatticePoint to = point(reversed(around[(corner + 2) % 3], posy).t);
+  if (!is_cone()) return metric.angle(from, to);
+  const LatticePoint top = apex(corner);
+  if (metric.squared_length(top) < rounding) {  // the other way around to the last edge
+    return metric.angle(from, point(composed(to_next, around[(corner + 1) % 3], posy).t));
+  }
+  return metric.angle(from, top) + metric.angle(top, to);
+}
+
+double LatticeTriangle::flaw() const {
+  constexpr double flat = 1, turned = 4;
+  if (!is_cone()) {
+    const double size = area();
+    return size < 0 ? turned * (1 - size) : size < 0.25 ? flat : 0;
+  }
+  const LatticeMetric metric{posy};
+  const auto corners = unroll(*this);
+  double result = 0, size = 0, turn = 0;
+  bool apex_is_corner = false;
+  for (int k = 0; k < 3; ++k) {
+    const double part = cross(corners[k], corners[k + 1]);
+    if (part < -rounding) result += turned * (0.5 - part);
+    size += part;
+    turn += std::abs(metric.angle(corners[k], corners[k + 1]));
+    apex_is_corner = apex_is_corner || metric.squared_length(corners[k]) < rounding;
+  }
+  if (result > 0) return result;
+  if (size < 0.25) return flat;
+  return apex_is_corner || std::abs(turn - apex_angle()) < 1e-3 ? 0 : turned;
+}
+
+}  // namespace meshgrain
