@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "extract/reduce_faces.h"
 #include "field/transfer.h"
 #include "mesh/border.h"
 #include "mesh/frame.h"
@@ -152,11 +153,12 @@ class Pipeline {
     });
   }
 
-  /// Positions and the mesh; where a count was asked for and missed, again with edges that much
-  /// longer or shorter, and the nearest is kept.
+  /// Positions and the mesh. Where a count was asked for and missed, again with edges that much
+  /// longer or shorter. A few faces too many can be taken away one by one: that costs some
+  /// regularity, so that more of it is allowed only when other lengths have not helped.
   void position_and_extract() {
-    constexpr int attempts = 3;
-    constexpr double tolerance = 0.05;
+    constexpr int attempts = 8;
+    constexpr double tolerance = 0.008;
     const bool given = options_.fields != nullptr && !options_.fields->position.points.empty();
     double least_error = std::numeric_limits<double>::infinity();
     for (int attempt = 0; attempt < attempts; ++attempt) {
@@ -166,14 +168,24 @@ class Pipeline {
       });
       Extraction found = stage_("extraction", [&] { return extract(positions); });
       const double ratio = target_.count_ratio(found.mesh);
-      const double error = std::fabs(std::log(ratio));
+      // Faces can be taken away, but not added.
+      const double error = ratio < 1 ? 1 / ratio - 1 : (ratio - 1) / 5;
       if (error < least_error) {
         least_error = error;
         extraction_ = std::move(found);
         fields().position = std::move(positions);
       }
-      if (given || error < tolerance) break;
-      lengths_ = scaled(lengths_, std::clamp(std::sqrt(ratio), 0.5, 2.0));
+      const double closing = attempt < 2 ? 0.015 : 0.03;
+      if (given || (ratio > 1 - tolerance && ratio < 1 + closing)) break;
+      const double aim = attempt < 2 ? 1 : 1.01;
+      lengths_ = scaled(lengths_, std::clamp(std::sqrt(ratio / aim), 0.5, 2.0));
+    }
+    const double ratio = target_.count_ratio(extraction_.mesh);
+    if (ratio > 1 + tolerance && ratio < 1.1) {
+      stage_("extraction", [&] {
+        reduce_faces(extraction_, posy_of(options_.faces), target_.faces_to_close(extraction_.mesh),
+                     context_);
+      });
     }
     if (extraction_.mesh.faces.empty()) {
       throw Error(
@@ -197,8 +209,12 @@ class Pipeline {
 
   void smooth_faces() {
     stage_("smoothing", [&] {
+      if (options_.faces == OutputFaces::quads) split_into_quads(extraction_);
       SmoothOptions smoothing;
       smoothing.iterations = options_.smoothing;
+      // Triangles of one size are regular; the triangles among quads are smaller than these.
+      if (options_.faces == OutputFaces::triangles) smoothing.evenness = 0.7;
+      if (options_.faces == OutputFaces::quad_dominant) smoothing.evenness = 0.5;
       const EdgeLength& lengths = fields().position.edge_length;
       if (!lengths.uniform() && nodes_are_vertices_) {
         std::vector<float> sizes;
@@ -242,8 +258,10 @@ class Pipeline {
   /// their edges, so that there the same cost bends the surface's grid over a longer way.
   double cancelling_cost() const {
     if (options_.regularity >= 1) return std::numeric_limits<double>::infinity();
-    const double least = options_.faces == OutputFaces::quads ? 2.5 : 5;
-    return least / std::pow(1 - options_.regularity, 1.5);
+    const double least = options_.faces == OutputFaces::quads           ? 4
+                         : options_.faces == OutputFaces::quad_dominant ? 8
+                                                                        : 7;
+    return least / std::pow(1 - options_.regularity, 0.9);
   }
 
   Extraction extract(const PositionField& positions) {
@@ -263,7 +281,6 @@ class Pipeline {
       for (Index& node : found.nodes) node = std::as_const(surface_.faces)[node][0];
     }
     if (options_.manifold) make_manifold(found);
-    if (options_.faces == OutputFaces::quads) split_into_quads(found);
     if (options_.faces == OutputFaces::hexagons) take_dual(found);
     return found;
   }

@@ -7,6 +7,7 @@
 
 #include "extract/cancel_singularities.h"
 #include "extract/clusters.h"
+#include "extract/collect_faces.h"
 #include "extract/drop_unused.h"
 #include "extract/face_repair.h"
 #include "extract/lattice_mesh.h"
@@ -61,39 +62,6 @@ void drop_fragments(Extraction& extraction, const Graph& graph) {
   if (kept.size() == mesh.faces.size()) return;
   mesh.faces = std::move(kept);
   drop_unused(extraction);
-}
-
-/// The closed orbits as faces, and only the vertices that they use.
-/// `vertex` gets the number of each cluster's vertex, or no_index.
-Extraction collect_faces(const PolygonMap& map, const FaceRepair& repair, const Clusters& clusters,
-                         std::vector<Index>& vertex) {
-  Extraction result;
-  vertex.assign(clusters.positions.size(), no_index);
-  std::vector<std::uint8_t> seen(map.halfedges(), 0);
-  std::vector<Index> orbit, face;
-  for (Index h = 0; h < map.halfedges(); ++h) {
-    if (map.removed(h) || seen[h]) continue;
-    map.orbit(h, orbit);
-    for (const Index g : orbit) seen[g] = 1;
-    if (repair.is_hole(h) || orbit.size() < 3) continue;
-    face.clear();
-    for (const Index g : orbit) face.push_back(map.origin(g));
-    std::sort(face.begin(), face.end());
-    if (std::adjacent_find(face.begin(), face.end()) != face.end()) continue;
-    face.clear();
-    for (const Index g : orbit) {
-      Index& v = vertex[map.origin(g)];
-      if (v == no_index) {
-        v = static_cast<Index>(result.mesh.positions.size());
-        result.mesh.positions.push_back(clusters.positions[map.origin(g)]);
-        result.mesh.normals.push_back(clusters.normals[map.origin(g)]);
-        result.nodes.push_back(clusters.nodes[map.origin(g)]);
-      }
-      face.push_back(v);
-    }
-    result.mesh.faces.push_back(face);
-  }
-  return result;
 }
 
 /// The local changes that leave fewer irregular faces and vertices.

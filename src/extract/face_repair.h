@@ -1,9 +1,13 @@
 #pragma once
 
+#include <algorithm>
+#include <optional>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "extract/clusters.h"
+#include "extract/link_condition.h"
 #include "extract/polygon_map.h"
 #include "field/jumps.h"
 
@@ -44,14 +48,18 @@ class FaceRepair {
   /// become quads, and the long side of a flat triangle makes way for a T-junction.
   void improve_edges();
 
-  /// Quads: closes faces by merging two opposite corners as long as that leaves fewer irregular
-  /// vertices.
+  /// Closes quads by merging two opposite corners, as long as that leaves fewer irregular vertices.
   void close_quads();
+  /// Closes `count` of them, wherever it leaves the fewest. Returns how many it could.
+  std::size_t close_quads(std::size_t count);
 
   // Triangles (triangle_repair.cpp).
 
   /// Turns the edge between two triangles as long as that leaves fewer irregular vertices.
   void flip_edges();
+  /// Contracts `count` edges, each where that leaves the fewest irregular vertices. Returns how
+  /// many it could.
+  std::size_t contract_edges(std::size_t count);
 
   /// Splits faces with more corners than the symmetry allows along their best chords. A face of a
   /// 6-PoSy that no chord can split, as its corners are joined outside of it already, gets a vertex
@@ -80,8 +88,15 @@ class FaceRepair {
   /// How far from regular the face would be that an edge leaves when it goes.
   double removal_cost(Index h) const;
   /// By how much the number of irregular vertices falls if the origin of h and the corner opposite
-  /// to it in their quad become one; 0 if they must not.
-  int closing_gain(Index h) const;
+  /// to it in their quad become one; nothing if they must not.
+  std::optional<int> closing_gain(Index h) const;
+  /// The same for contracting h between triangles.
+  std::optional<int> contraction_gain(Index h);
+  void close_quad(Index h);
+  /// Applies the change with the greatest gain `count` times, of several the one whose two vertices
+  /// are nearest to each other.
+  template <typename Gain, typename Other, typename Apply>
+  std::size_t reduce(std::size_t count, const Gain& gain, const Other& other, const Apply& apply);
   int flip_gain(Index h) const;
   bool split_once(Index h);
   void contract(Index h);
@@ -92,6 +107,41 @@ class FaceRepair {
   Clusters& clusters_;
   int posy_;
   std::vector<std::uint8_t> hole_;  // one flag a halfedge
+  LinkCondition link_;
 };
+
+template <typename Gain, typename Other, typename Apply>
+std::size_t FaceRepair::reduce(std::size_t count, const Gain& gain, const Other& other,
+                               const Apply& apply) {
+  struct Candidate {
+    int gain;
+    float distance;
+    Index h;
+    auto key() const { return std::tuple(-gain, distance, h); }
+  };
+  std::size_t done = 0;
+  while (done < count) {
+    std::vector<Candidate> candidates;
+    for (Index h = 0; h < map_.halfedges(); ++h) {
+      if (const std::optional<int> g = gain(h)) {
+        const Vec3 d = clusters_.positions[map_.origin(h)] - clusters_.positions[other(h)];
+        candidates.push_back({*g, d.norm(), h});
+      }
+    }
+    if (candidates.empty()) break;
+    std::sort(candidates.begin(), candidates.end(),
+              [](const Candidate& a, const Candidate& b) { return a.key() < b.key(); });
+    const int best = candidates.front().gain;
+    const std::size_t before = done;
+    for (const Candidate& c : candidates) {
+      if (c.gain < best || done == count) break;
+      if (gain(c.h) != best) continue;  // what lies beside it has changed
+      apply(c.h);
+      ++done;
+    }
+    if (done == before) break;
+  }
+  return done;
+}
 
 }  // namespace meshgrain

@@ -169,12 +169,12 @@ void FaceRepair::improve_edges() {
   }
 }
 
-int FaceRepair::closing_gain(Index h) const {
-  if (map_.removed(h) || hole_[h] || map_.degree(h) != 4) return 0;
+std::optional<int> FaceRepair::closing_gain(Index h) const {
+  if (map_.removed(h) || hole_[h] || map_.degree(h) != 4) return std::nullopt;
   const Index across = map_.next(map_.next(h));
   const Index a = map_.origin(h), c = map_.origin(across);
   const Index sides[2] = {map_.origin(map_.next(h)), map_.origin(map_.next(across))};
-  if (clusters_.on_border[a] || clusters_.on_border[c]) return 0;
+  if (clusters_.on_border[a] || clusters_.on_border[c]) return std::nullopt;
   // The two may have nothing in common but this face, or other faces would come to touch
   // themselves.
   std::vector<Index> near;
@@ -190,26 +190,36 @@ int FaceRepair::closing_gain(Index h) const {
     const bool side = v == sides[0] || v == sides[1];
     apart = apart && (side || !std::binary_search(near.begin(), near.end(), v));
   });
-  if (!apart) return 0;
+  if (!apart) return std::nullopt;
   const auto valence = static_cast<int>(map_.valence(a) + map_.valence(c)) - 2;
   int gain = is_irregular(a, 0) + is_irregular(c, 0) - (valence != 4);
   for (const Index v : sides) {
-    if (static_cast<int>(map_.valence(v)) < regular_valence(clusters_.on_border[v])) return 0;
+    if (static_cast<int>(map_.valence(v)) < regular_valence(clusters_.on_border[v]))
+      return std::nullopt;
     gain += is_irregular(v, 0) - is_irregular(v, -1);
   }
   return gain;
 }
 
+void FaceRepair::close_quad(Index h) {
+  const Index across = map_.next(map_.next(h));
+  const Index a = map_.origin(h), c = map_.origin(across);
+  clusters_.positions[a] = 0.5f * (clusters_.positions[a] + clusters_.positions[c]);
+  const Index chord = map_.add_edge(h, across);
+  hole_.resize(map_.halfedges(), 0);
+  contract(chord);
+}
+
 void FaceRepair::close_quads() {
   for (Index h = 0; h < map_.halfedges(); ++h) {
-    if (closing_gain(h) <= 0) continue;
-    const Index across = map_.next(map_.next(h));
-    const Index a = map_.origin(h), c = map_.origin(across);
-    clusters_.positions[a] = 0.5f * (clusters_.positions[a] + clusters_.positions[c]);
-    const Index chord = map_.add_edge(h, across);
-    hole_.resize(map_.halfedges(), 0);
-    contract(chord);
+    if (closing_gain(h).value_or(0) > 0) close_quad(h);
   }
+}
+
+std::size_t FaceRepair::close_quads(std::size_t count) {
+  return reduce(
+      count, [&](Index h) { return closing_gain(h); },
+      [&](Index h) { return map_.target(map_.next(h)); }, [&](Index h) { close_quad(h); });
 }
 
 }  // namespace meshgrain

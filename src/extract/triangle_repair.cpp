@@ -72,4 +72,39 @@ void FaceRepair::flip_edges() {
   }
 }
 
+std::optional<int> FaceRepair::contraction_gain(Index h) {
+  if (map_.removed(h)) return std::nullopt;
+  const Index t = PolygonMap::twin(h), a = map_.origin(h), b = map_.target(h);
+  const auto regular = [&](Index v) { return clusters_.on_border[v] ? 4 : 6; };
+  const auto irregular = [&](Index v, int change) {
+    return static_cast<int>(map_.valence(v)) + change != regular(v);
+  };
+  if (clusters_.on_border[b] && !clusters_.on_border[a]) return std::nullopt;
+  if (!link_.holds(map_, hole_, h)) return std::nullopt;
+  int sides = 0, gain = irregular(a, 0) + irregular(b, 0);
+  for (const Index side : {h, t}) {
+    if (hole_[side]) continue;
+    ++sides;
+    const Index apex = map_.target(map_.next(side));
+    if (map_.valence(apex) <= 3) return std::nullopt;
+    gain += irregular(apex, 0) - irregular(apex, -1);
+  }
+  if (sides < 2) return std::nullopt;
+  return gain - irregular(a, static_cast<int>(map_.valence(b)) - 4);
+}
+
+std::size_t FaceRepair::contract_edges(std::size_t count) {
+  const std::size_t done = reduce(
+      count, [&](Index h) { return contraction_gain(h); }, [&](Index h) { return map_.target(h); },
+      [&](Index h) {
+        const Index a = map_.origin(h), b = map_.target(h);
+        if (!clusters_.on_border[a]) {
+          clusters_.positions[a] = 0.5f * (clusters_.positions[a] + clusters_.positions[b]);
+        }
+        contract(h);
+      });
+  flip_edges();
+  return done;
+}
+
 }  // namespace meshgrain

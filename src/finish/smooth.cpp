@@ -6,14 +6,16 @@
 #include <numbers>
 #include <utility>
 
-#include "finish/feature_lines.h"
-#include "finish/projector.h"
+#include "finish/placement.h"
+#include "finish/untangle.h"
 #include "mesh/vertex_faces.h"
 #include "meshgrain/finish.h"
 #include "meshgrain/surface.h"
 
 namespace meshgrain {
 namespace {
+
+constexpr std::size_t grain = 1024;
 
 /// For every corner of a face, its place in the regular polygon that fits the face best: the face
 /// in its mean plane as complex numbers, of which the first Fourier coefficient is that polygon (in
@@ -80,84 +82,123 @@ float mean_side(const Mesh& mesh, const EdgeLength& relative) {
   return wanted > 0 ? static_cast<float>(std::sqrt(area / wanted)) : 0.0f;
 }
 
+/// Each iteration fits a regular polygon to every face, moves each vertex to
+/// the mean of its places in those, and back onto the surface.
+class Smoother {
+ public:
+  /// Puts all vertices onto the surface.
+  Smoother(Extraction& extraction, const Mesh& surface, const Graph& graph,
+           const SmoothOptions& options, const Context& context);
+
+  void iterate(int iterations);
+
+  /// Mends single faces that are turned over or nearly degenerate.
+  void untangle();
+
+ private:
+  template <typename Body>
+  void for_vertices(const Body& body) const;
+  void fit_polygons(float side);
+  Vec3 mean_target(Index v) const;
+
+  Extraction& extraction_;
+  Mesh& mesh_;
+  const SmoothOptions& options_;
+  const Context& context_;
+  Placement placement_;
+  VertexFaces around_;
+  std::vector<Vec3> previous_;  // positions, one iteration ago
+  std::vector<Vec3> targets_;   // of every corner of a face
+  std::vector<Vec3> normals_;   // of the surface
+};
+
+Smoother::Smoother(Extraction& extraction, const Mesh& surface, const Graph& graph,
+                   const SmoothOptions& options, const Context& context)
+    : extraction_(extraction),
+      mesh_(extraction.mesh),
+      options_(options),
+      context_(context),
+      placement_(extraction, surface, graph, options.crease_degrees, context),
+      around_(vertex_faces(mesh_, context)) {
+  previous_.resize(mesh_.positions.size());
+  for_vertices([&](std::size_t v) { previous_[v] = placement_.place(mesh_.positions[v], v); });
+  mesh_.positions = previous_;
+}
+
+template <typename Body>
+void Smoother::for_vertices(const Body& body) const {
+  context_.for_ranges(mesh_.positions.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) body(v);
+  });
+}
+
+void Smoother::fit_polygons(float side) {
+  targets_.resize(mesh_.faces.corners().size());
+  const auto evenness = static_cast<float>(options_.evenness);
+  context_.for_ranges(mesh_.faces.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto face = std::as_const(mesh_.faces)[f];
+      float relative = 0;
+      Vec3 upward = Vec3::Zero();
+      for (const Index v : face) {
+        relative += options_.relative_size[v];
+        upward += normals_[v];
+      }
+      relative /= static_cast<float>(face.size());
+      const float length = upward.norm();
+      if (length > 0) upward /= length;
+      regular_targets(face, mesh_.positions, upward, relative * side, evenness,
+                      {targets_.data() + mesh_.faces.first(f), face.size()});
+    }
+  });
+}
+
+Vec3 Smoother::mean_target(Index v) const {
+  Vec3 sum = Vec3::Zero();
+  for (const Index f : around_[v]) {
+    const auto face = std::as_const(mesh_.faces)[f];
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      if (face[k] == v) sum += targets_[mesh_.faces.first(f) + k];
+    }
+  }
+  return sum / static_cast<float>(around_[v].size());
+}
+
+void Smoother::iterate(int iterations) {
+  // Each step goes on in part where the last one went (Polyak's heavy ball): faults that reach far
+  // then fade in as many iterations as they are edges wide, rather than in the square of that.
+  constexpr float momentum = 0.9f;
+  std::vector<Vec3> next(mesh_.positions.size());
+  normals_.resize(mesh_.positions.size());
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    context_.progress("smoothing", static_cast<double>(iteration) / iterations);
+    if (iteration % 4 == 0) {  // vertices move over the surface slowly
+      for_vertices([&](std::size_t v) { normals_[v] = placement_.normal(v); });
+    }
+    fit_polygons(mean_side(mesh_, options_.relative_size));
+    for_vertices([&](std::size_t v) {
+      const Vec3& p = mesh_.positions[v];
+      Vec3 step = momentum * (p - previous_[v]);
+      if (!around_[v].empty()) step += mean_target(static_cast<Index>(v)) - p;
+      next[v] = placement_.place(p + step, v);
+    });
+    previous_.swap(mesh_.positions);
+    mesh_.positions.swap(next);
+  }
+}
+
+void Smoother::untangle() {
+  meshgrain::untangle(extraction_, around_, placement_, context_);
+}
+
 }  // namespace
 
 void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
             const SmoothOptions& options, const Context& context) {
-  constexpr std::size_t grain = 1024;
-  // Each step goes on in part where the last one went (Polyak's heavy ball): faults that reach far
-  // then fade in as many iterations as they are edges wide, rather than in the square of that.
-  constexpr float momentum = 0.9f;
-  std::vector<Vec3> previous;
-  const auto evenness = static_cast<float>(options.evenness);
-  Mesh& mesh = extraction.mesh;
-  std::vector<Index>& seeds = extraction.nodes;
-  const Projector projector(surface, graph, context);
-  const FeatureLines lines(surface, options.crease_degrees, context);
-  Rails rails = attach_to_lines(extraction, surface, lines);
-  const VertexFaces around = vertex_faces(mesh, context);
-
-  const auto place = [&](const Vec3& p, std::size_t v) -> Vec3 {
-    if (rails.seed[v] != no_index) {
-      return rails.fixed[v] ? surface.positions[rails.seed[v]] : lines.project(p, rails.seed[v]);
-    }
-    return rails.fixed[v] ? mesh.positions[v] : projector.project(p, seeds[v]);
-  };
-
-  std::vector<Vec3> targets(mesh.faces.corners().size());
-  std::vector<Vec3> next(mesh.positions.size());
-  std::vector<Vec3> normals(mesh.positions.size());  // of the surface
-  const std::size_t n = mesh.positions.size();
-  for (int iteration = 0; iteration <= options.iterations; ++iteration) {
-    context.progress("smoothing", (iteration + 0.5) / (options.iterations + 1.0));
-    if (iteration == 0) {
-      // First of all onto the surface.
-      context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t v = begin; v < end; ++v) next[v] = place(mesh.positions[v], v);
-      });
-      mesh.positions.swap(next);
-      continue;
-    }
-    if (iteration % 4 == 1) {  // vertices move over the surface slowly
-      context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t v = begin; v < end; ++v) normals[v] = projector.normal(seeds[v]);
-      });
-    }
-    const float side = mean_side(mesh, options.relative_size);
-    context.for_ranges(mesh.faces.size(), grain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t f = begin; f < end; ++f) {
-        float relative = 0;
-        Vec3 upward = Vec3::Zero();
-        for (const Index v : std::as_const(mesh.faces)[f]) {
-          relative += options.relative_size[v];
-          upward += normals[v];
-        }
-        relative /= static_cast<float>(mesh.faces.degree(f));
-        const float length = upward.norm();
-        if (length > 0) upward /= length;
-        regular_targets(std::as_const(mesh.faces)[f], mesh.positions, upward, relative * side,
-                        evenness, {targets.data() + mesh.faces.first(f), mesh.faces.degree(f)});
-      }
-    });
-    context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) {
-        Vec3 sum = Vec3::Zero();
-        for (const Index f : around[v]) {
-          const auto face = std::as_const(mesh.faces)[f];
-          for (std::size_t k = 0; k < face.size(); ++k) {
-            if (face[k] == v) sum += targets[mesh.faces.first(f) + k];
-          }
-        }
-        const auto count = static_cast<float>(around[v].size());
-        const Vec3& p = mesh.positions[v];
-        Vec3 step = count > 0 ? Vec3(sum / count - p) : Vec3(Vec3::Zero());
-        if (iteration > 2) step += momentum * (p - previous[v]);
-        next[v] = place(p + step, v);
-      }
-    });
-    previous = mesh.positions;
-    mesh.positions.swap(next);
-  }
+  Smoother smoother(extraction, surface, graph, options, context);
+  if (options.iterations == 0) return;
+  smoother.iterate(options.iterations);
+  smoother.untangle();
 }
 
 }  // namespace meshgrain

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/edges.h"
+
 namespace meshgrain {
 
 int posy_of(OutputFaces faces) {
@@ -14,6 +16,7 @@ Target::Target(const RemeshOptions& options, std::size_t input_vertices, double 
   // one hexagon. A pure quad mesh has four quads, and four vertices, for each of the lattice's
   // before its split.
   if (posy_of(options.faces) == 6) cell_area_ = std::sqrt(3.0) / 2;
+  kind_ = options.faces;
   const bool split = options.faces == OutputFaces::quads;
   const bool dual = options.faces == OutputFaces::hexagons;
   const double faces_per_cell = split ? 4 : options.faces == OutputFaces::triangles ? 2 : 1;
@@ -42,9 +45,25 @@ EdgeLength Target::edge_lengths(const Graph& graph, const EdgeLength& relative) 
 }
 
 double Target::count_ratio(const Mesh& mesh) const {
-  if (faces_ > 0) return static_cast<double>(mesh.faces.size()) / faces_;
-  if (vertices_ > 0) return static_cast<double>(mesh.positions.size()) / vertices_;
+  // A mesh that is still to be split gets a quad for each corner, and a vertex for each edge and
+  // face.
+  const bool split = kind_ == OutputFaces::quads;
+  const std::size_t corners = mesh.faces.corners().size();
+  const std::size_t faces = split ? corners : mesh.faces.size();
+  const std::size_t vertices =
+      mesh.positions.size() + (split ? mesh.faces.size() + edges_of(mesh).size() : 0);
+  if (faces_ > 0) return static_cast<double>(faces) / faces_;
+  if (vertices_ > 0) return static_cast<double>(vertices) / vertices_;
   return 1;
+}
+
+std::size_t Target::faces_to_close(const Mesh& mesh) const {
+  // What each of them takes away.
+  const double faces = kind_ == OutputFaces::quads ? 4 : kind_ == OutputFaces::triangles ? 2 : 1;
+  const double vertices = kind_ == OutputFaces::quads ? 4 : 1;
+  const double excess = count_ratio(mesh) - 1;
+  return static_cast<std::size_t>(std::max(
+      0.0, std::round(faces_ > 0 ? excess * faces_ / faces : excess * vertices_ / vertices)));
 }
 
 }  // namespace meshgrain

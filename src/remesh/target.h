@@ -21,13 +21,18 @@ class Target {
   /// The edge length at every node of a graph, varying as `relative` does.
   EdgeLength edge_lengths(const Graph& graph, const EdgeLength& relative) const;
 
-  /// How many faces or vertices a mesh has for one that was asked for; 1 if it went by length.
+  /// How many faces or vertices a mesh has for one that was asked for; 1 if it went by length. For
+  /// pure quads the mesh is the one before it is split.
   double count_ratio(const Mesh& mesh) const;
 
+  /// How often reduce_faces() must act on a mesh that has too many.
+  std::size_t faces_to_close(const Mesh& mesh) const;
+
  private:
-  double cells_ = 0;                 // wanted squares, or pairs of triangles; 0: by length
-  double length_ = 0;                // wanted lattice edge length, if by length
-  double cell_area_ = 1;             // in squared edge lengths
+  double cells_ = 0;      // wanted squares, or pairs of triangles; 0: by length
+  double length_ = 0;     // wanted lattice edge length, if by length
+  double cell_area_ = 1;  // in squared edge lengths
+  OutputFaces kind_ = OutputFaces::quads;
   double faces_ = 0, vertices_ = 0;  // wanted; 0 if not what was asked for
 };
 

@@ -1,0 +1,34 @@
+#include "extract/reduce_faces.h"
+
+#include <utility>
+
+#include "extract/collect_faces.h"
+#include "extract/face_repair.h"
+
+namespace meshgrain {
+
+std::size_t reduce_faces(Extraction& extraction, int posy, std::size_t count,
+                         const Context& context) {
+  const Mesh& mesh = extraction.mesh;
+  std::vector<Index> sources;
+  std::vector<std::uint8_t> holes;
+  PolygonMap map(mesh, sources, holes, context);
+  if (sources.size() != mesh.positions.size()) return 0;
+  Clusters clusters;
+  for (const Index v : sources) {
+    clusters.positions.push_back(mesh.positions[v]);
+    clusters.normals.push_back(mesh.normals[v]);
+    clusters.nodes.push_back(extraction.nodes[v]);
+  }
+  clusters.on_border.assign(sources.size(), 0);
+  for (Index h = 0; h < map.halfedges(); ++h) {
+    if (holes[h]) clusters.on_border[map.origin(h)] = 1;
+  }
+  FaceRepair repair(map, clusters, posy, std::move(holes));
+  const std::size_t done = posy == 4 ? repair.close_quads(count) : repair.contract_edges(count);
+  std::vector<Index> vertex;
+  if (done > 0) extraction = collect_faces(map, repair, clusters, vertex);
+  return done;
+}
+
+}  // namespace meshgrain

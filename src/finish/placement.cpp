@@ -1,0 +1,22 @@
+#include "finish/placement.h"
+
+namespace meshgrain {
+
+Placement::Placement(Extraction& extraction, const Mesh& surface, const Graph& graph,
+                     double crease_degrees, const Context& context)
+    : extraction_(extraction),
+      surface_(surface),
+      projector_(surface, graph, context),
+      lines_(surface, crease_degrees, context),
+      rails_(attach_to_lines(extraction, surface, lines_)) {}
+
+Vec3 Placement::place(const Vec3& p, std::size_t v) {
+  Index& on_line = rails_.seed[v];
+  if (rails_.fixed[v]) {
+    return on_line != no_index ? surface_.positions[on_line] : extraction_.mesh.positions[v];
+  }
+  return on_line != no_index ? lines_.project(p, on_line)
+                             : projector_.project(p, extraction_.nodes[v]);
+}
+
+}  // namespace meshgrain
