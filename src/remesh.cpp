@@ -175,16 +175,16 @@ class Pipeline {
         extraction_ = std::move(found);
         fields().position = std::move(positions);
       }
-      const double closing = attempt < 2 ? 0.015 : 0.03;
+      const double closing = attempt < 3 ? tolerance : 0.03;
       if (given || (ratio > 1 - tolerance && ratio < 1 + closing)) break;
-      const double aim = attempt < 2 ? 1 : 1.01;
+      const double aim = attempt < 3 ? 1 : 1.01;
       lengths_ = scaled(lengths_, std::clamp(std::sqrt(ratio / aim), 0.5, 2.0));
     }
     const double ratio = target_.count_ratio(extraction_.mesh);
-    if (ratio > 1 + tolerance && ratio < 1.1) {
+    if (ratio > 1 + tolerance && ratio < 1.2) {
       stage_("extraction", [&] {
-        reduce_faces(extraction_, posy_of(options_.faces), target_.faces_to_close(extraction_.mesh),
-                     context_);
+        reduce_faces(extraction_, posy_of(options_.faces),
+                     target_.faces_to_close(extraction_.mesh, tolerance), context_);
       });
     }
     if (extraction_.mesh.faces.empty()) {
@@ -214,7 +214,7 @@ class Pipeline {
       smoothing.iterations = options_.smoothing;
       // Triangles of one size are regular; the triangles among quads are smaller than these.
       if (options_.faces == OutputFaces::triangles) smoothing.evenness = 0.7;
-      if (options_.faces == OutputFaces::quad_dominant) smoothing.evenness = 0.5;
+      if (options_.faces == OutputFaces::quad_dominant) smoothing.evenness = 0.54;
       const EdgeLength& lengths = fields().position.edge_length;
       if (!lengths.uniform() && nodes_are_vertices_) {
         std::vector<float> sizes;
@@ -260,7 +260,7 @@ class Pipeline {
     if (options_.regularity >= 1) return std::numeric_limits<double>::infinity();
     const double least = options_.faces == OutputFaces::quads           ? 4
                          : options_.faces == OutputFaces::quad_dominant ? 8
-                                                                        : 7;
+                                                                        : 9.5;
     return least / std::pow(1 - options_.regularity, 0.9);
   }
 

@@ -236,7 +236,8 @@ TEST_F(Cli, BoundariesAreFollowed) {
   for (Vec3& p : plate.positions) p = Vec3(p.x() - p.y(), p.x() + p.y(), 0);
   write_mesh(folder_ / "in.obj", plate);
   const auto angle_sigma = [&](const char* options) { return statistics(options).angle_sigma; };
-  EXPECT_NE(bytes("-f 400 -b"), bytes("-f 400"));
+  EXPECT_EQ(bytes("-f 400 -b"), bytes("-f 400"));
+  EXPECT_NE(bytes("-f 400 --free-boundaries"), bytes("-f 400"));
   EXPECT_EQ(bytes("-f 400 -b"), bytes("-f 400 --boundaries"));
   EXPECT_LT(angle_sigma("-f 400 -b -S 0"), 2);
 }

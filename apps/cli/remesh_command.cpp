@@ -153,7 +153,8 @@ void add_options(CLI::App& app, Arguments& a) {
              ->check(refuse_unless_finite)
              ->check(CLI::Range(0.0, 180.0))
              ->type_name("DEGREES"));
-  follow(app.add_flag("-b,--boundaries", o.align_border, "follow the border of an open mesh"));
+  follow(app.add_flag("-b,--boundaries,!--free-boundaries", o.align_border,
+                      "follow the border of an open mesh (yes)"));
   follow(app.add_option("--curvature", o.curvature.strength,
                         "pull towards the directions of curvature: 0 (off) to 1")
              ->check(refuse_unless_finite)

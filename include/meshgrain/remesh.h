@@ -36,7 +36,7 @@ struct RemeshOptions {
   SolverOptions solver;
   OrientationEnergy orientation_energy = OrientationEnergy::extrinsic;
   PositionEnergy position_energy = PositionEnergy::extrinsic;
-  bool align_border = false;
+  bool align_border = true;  ///< Of meshes.
   /// From 0, the best shapes, to 1, the fewest irregular vertices: hardly more than the orientation
   /// field has singularities.
   double regularity = 0.5;

@@ -202,7 +202,7 @@ class Cancelling {
   /// How many irregular vertices vanish if a path ends here; nothing if it only passes, less than 0
   /// if it can do neither.
   std::optional<double> gain(const State& in, Index start) const {
-    if (lattice_.holes[in.h]) return 0;
+    if (lattice_.holes[in.h]) return keeps_to_border(PolygonMap::twin(in.h), in) ? 0 : -1;
     if (in.h == start || map_.next(in.h) == start || map_.prev(in.h) == start) return -1;
     const Jump sum = lattice_.sum(in.h);
     if (sum.rotation != 0) return 0;
@@ -213,6 +213,16 @@ class Cancelling {
         metric.squared_length(std::array<int, 2>{sum.t[0] + u[0], sum.t[1] + u[1]});
     if (after >= metric.squared_length(sum.t)) return std::nullopt;
     return after == 0 ? 2 : 1;
+  }
+
+  /// Whether an edge of the border that runs along an axis of the lattice still does when what
+  /// comes in by the hole beside it has gone out through it.
+  bool keeps_to_border(Index h, const State& out) const {
+    if (posy_ != 4) return true;
+    const auto before = lattice_.jump(h).t;
+    const int carried = (out.unit + posy_ - lattice_.jump(h).rotation) % posy_;
+    const auto after = left(h, carried).t;
+    return (before[0] != 0 || after[0] == 0) && (before[1] != 0 || after[1] == 0);
   }
 
   void pass_on(const State& in, const Entry& entry) {

@@ -25,8 +25,8 @@ class Target {
   /// pure quads the mesh is the one before it is split.
   double count_ratio(const Mesh& mesh) const;
 
-  /// How often reduce_faces() must act on a mesh that has too many.
-  std::size_t faces_to_close(const Mesh& mesh) const;
+  /// How often reduce_faces() must act on a mesh so that it has no more than this share too many.
+  std::size_t faces_to_close(const Mesh& mesh, double tolerance) const;
 
  private:
   double cells_ = 0;      // wanted squares, or pairs of triangles; 0: by length

@@ -1,0 +1,72 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "extract/lattice_triangle.h"
+
+namespace meshgrain {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+TEST(LatticeTriangle, HalfACell) {
+  const LatticeTriangle triangle{4, {Jump{0, {1, 0}}, Jump{0, {0, 1}}, Jump{0, {-1, -1}}}};
+  EXPECT_TRUE(triangle.is_plane());
+  EXPECT_DOUBLE_EQ(triangle.area(), 1);
+  EXPECT_EQ(triangle.flaw(), 0);
+  EXPECT_NEAR(triangle.angle(0), pi / 4, 1e-12);
+  EXPECT_NEAR(triangle.angle(1), pi / 2, 1e-12);
+}
+
+TEST(LatticeTriangle, TurnedOverAndFlat) {
+  const LatticeTriangle turned{4, {Jump{0, {0, 1}}, Jump{0, {1, 0}}, Jump{0, {-1, -1}}}};
+  const LatticeTriangle flat{4, {Jump{0, {1, 0}}, Jump{0, {1, 0}}, Jump{0, {-2, 0}}}};
+  EXPECT_LT(turned.area(), 0);
+  EXPECT_GT(flat.flaw(), 0);
+  EXPECT_GT(turned.flaw(), flat.flaw());
+}
+
+TEST(LatticeTriangle, BurgersVector) {
+  const LatticeTriangle triangle{4, {Jump{0, {1, 0}}, Jump{0, {0, 1}}, Jump{0, {-1, 0}}}};
+  EXPECT_FALSE(triangle.is_plane());
+  EXPECT_FALSE(triangle.is_cone());
+  EXPECT_EQ(triangle.sum().t, (std::array<int, 2>{0, 1}));
+}
+
+/// Three unit edges around the corner of a cube, which is missing: the apex is the middle of the
+/// face, and the three quarters around it make 270 degrees.
+TEST(LatticeTriangle, ConeOfThreeQuarters) {
+  for (const int rotation : {1, 3}) {
+    const LatticeTriangle cone{4, {Jump{0, {1, 0}}, Jump{0, {0, 1}}, Jump{rotation, {-1, 0}}}};
+    if (std::abs(cone.apex_angle() - 1.5 * pi) > 1e-9) continue;
+    const LatticePoint apex = cone.apex();
+    EXPECT_NEAR(apex[0], 0.5, 1e-12);
+    EXPECT_NEAR(apex[1], 0.5, 1e-12);
+    EXPECT_EQ(cone.flaw(), 0);
+    EXPECT_NEAR(cone.area(), 1.5, 1e-12);
+    return;
+  }
+  ADD_FAILURE() << "neither turn makes three quarters";
+}
+
+/// From whichever corner it is looked at, a triangle is the same.
+TEST(LatticeTriangle, DoesNotDependOnTheFirstCorner) {
+  for (const int posy : {4, 6}) {
+    for (int rotation = 0; rotation < posy; ++rotation) {
+      for (int x = -2; x <= 2; ++x) {
+        for (int y = -2; y <= 2; ++y) {
+          const LatticeTriangle one{posy,
+                                    {Jump{1, {1, 0}}, Jump{0, {x, y}}, Jump{rotation, {y, 1}}}};
+          const LatticeTriangle other{posy, {one.around[1], one.around[2], one.around[0]}};
+          EXPECT_NEAR(one.area(), other.area(), 1e-9);
+          EXPECT_NEAR(one.flaw(), other.flaw(), 1e-9);
+          EXPECT_NEAR(one.angle(1), other.angle(0), 1e-9);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace meshgrain

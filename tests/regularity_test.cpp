@@ -1,0 +1,103 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "meshgrain/meshgrain.h"
+
+namespace meshgrain {
+namespace {
+
+RemeshResult remesh_shape(const Mesh& shape, OutputFaces faces, std::size_t count,
+                          double regularity) {
+  RemeshOptions options;
+  options.faces = faces;
+  options.face_count = count;
+  options.regularity = regularity;
+  return remesh(shape, options);
+}
+
+TEST(Regularity, AtOneOnlyOrientationSingularitiesAreLeft) {
+  for (const char* name : {"blob", "three-holes", "torus", "sphere"}) {
+    SCOPED_TRACE(name);
+    const Mesh shape = sample_shape(name);
+    const RemeshResult even = remesh_shape(shape, OutputFaces::quads, 3000, 0);
+    const RemeshResult regular = remesh_shape(shape, OutputFaces::quads, 3000, 1);
+    const std::size_t irregular = mesh_statistics(regular.mesh).singularities;
+    EXPECT_LE(irregular, mesh_statistics(even.mesh).singularities);
+    const auto of_field = static_cast<double>(*regular.report.orientation_singularities);
+    EXPECT_LE(static_cast<double>(irregular), 1.3 * of_field + 6);
+  }
+}
+
+TEST(Regularity, MustLieBetweenZeroAndOne) {
+  const Mesh shape = sample_shape("sphere");
+  for (const double wrong : {-0.1, 1.1, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THROW(remesh_shape(shape, OutputFaces::quads, 500, wrong), Error);
+  }
+}
+
+TEST(Regularity, CountsAreWithinOnePercent) {
+  for (const char* name : {"blob", "three-holes", "bracket", "plate"}) {
+    const Mesh shape = sample_shape(name);
+    for (const auto faces :
+         {OutputFaces::quads, OutputFaces::quad_dominant, OutputFaces::triangles}) {
+      for (const std::size_t count : {500, 3000}) {
+        SCOPED_TRACE(testing::Message()
+                     << name << ", kind " << static_cast<int>(faces) << ", " << count << " faces");
+        const auto wanted = static_cast<double>(count);
+        const auto got =
+            static_cast<double>(remesh_shape(shape, faces, count, 0.5).mesh.faces.size());
+        EXPECT_NEAR(got, wanted, 0.01 * wanted);
+      }
+    }
+  }
+}
+
+/// Noise makes fields contradict themselves everywhere; what comes out must be valid all the same.
+TEST(Regularity, KeepsTheTopologyOfNoisyShapes) {
+  for (const char* name : {"blob", "three-holes", "bracket", "plate"}) {
+    for (const float noise : {0.3f, 1.0f}) {
+      Mesh shape = sample_shape(name, 0.5);
+      const auto length = static_cast<float>(edge_lengths(shape).mean);
+      std::uint32_t state = 1;
+      for (Vec3& p : shape.positions) {
+        for (int k = 0; k < 3; ++k) {
+          state = state * 1664525u + 1013904223u;
+          p[k] += noise * length * (static_cast<float>(state >> 8) / (1 << 24) - 0.5f);
+        }
+      }
+      const MeshStatistics before = mesh_statistics(shape);
+      for (const auto faces :
+           {OutputFaces::quads, OutputFaces::quad_dominant, OutputFaces::triangles}) {
+        for (const double regularity : {0.0, 1.0}) {
+          SCOPED_TRACE(testing::Message()
+                       << name << ", noise " << noise << ", kind " << static_cast<int>(faces)
+                       << ", regularity " << regularity);
+          const MeshStatistics after =
+              mesh_statistics(remesh_shape(shape, faces, 800, regularity).mesh);
+          EXPECT_EQ(after.euler, before.euler);
+          EXPECT_EQ(after.components, before.components);
+          EXPECT_EQ(after.boundary_loops, before.boundary_loops);
+          EXPECT_EQ(after.non_manifold_edges, 0u);
+          EXPECT_EQ(after.non_manifold_vertices, 0u);
+          EXPECT_EQ(after.isolated_vertices, 0u);
+        }
+      }
+    }
+  }
+}
+
+TEST(Regularity, NoFaceOfASmoothShapeIsTurnedOver) {
+  for (const char* name : {"blob", "three-holes", "torus", "sphere"}) {
+    SCOPED_TRACE(name);
+    const Mesh shape = sample_shape(name);
+    for (const double regularity : {0.0, 0.5, 1.0}) {
+      const RemeshResult result = remesh_shape(shape, OutputFaces::quads, 3000, regularity);
+      EXPECT_EQ(mesh_statistics(result.mesh).inverted_quads, 0u);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace meshgrain
