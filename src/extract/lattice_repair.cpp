@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <initializer_list>
 #include <numbers>
 #include <numeric>
 #include <span>
+#include <utility>
+#include <vector>
 
 namespace meshgrain {
 namespace {
@@ -27,7 +31,8 @@ double flaws(std::span<const Piece> pieces) {
 
 class LatticeRepair {
  public:
-  explicit LatticeRepair(LatticeMesh& lattice) : lattice_(lattice), map_(lattice.map) {}
+  explicit LatticeRepair(LatticeMesh& lattice)
+      : lattice_(lattice), map_(lattice.map), changed_(map_.vertices(), 0) {}
 
   void run() {
     // Each kind of change lowers what it looks at; the bound is for those that work against each
@@ -43,6 +48,34 @@ class LatticeRepair {
   }
 
  private:
+  /// What a kind of change has looked at: for each edge or vertex, the time when it last did.
+  using Looked = std::vector<std::uint32_t>;
+
+  /// Whether one of these vertices' stars has changed since `looked` was last asked about this
+  /// element: what was refused before would be refused again.
+  bool is_news(Looked& looked, Index element, std::initializer_list<Index> vertices) {
+    if (element >= looked.size()) looked.resize(element + 1 + element / 8, 0);
+    const std::uint32_t last = std::exchange(looked[element], now_ + 1);
+    return std::any_of(vertices.begin(), vertices.end(),
+                       [&](Index v) { return changed_[v] >= last; });
+  }
+  /// The same for an edge between two triangles.
+  bool is_news(Looked& looked, Index h) {
+    const Index t = PolygonMap::twin(h);
+    return is_news(looked, h / 2,
+                   {map_.origin(h), map_.origin(t), map_.origin(map_.prev(h)),
+                    map_.origin(map_.prev(t))});
+  }
+  void touch(std::initializer_list<Index> vertices) {
+    ++now_;
+    for (const Index v : vertices) changed_[v] = now_;
+  }
+  void touch_star(Index v) {
+    changed_.resize(map_.vertices(), 0);
+    changed_[v] = ++now_;
+    lattice_.for_each_leaving(v, [&](Index h) { changed_[map_.target(h)] = now_; });
+  }
+
   Piece piece(Index h) const {
     return {{map_.origin(h), map_.target(h), map_.target(map_.next(h))}, lattice_.triangle(h)};
   }
@@ -52,6 +85,16 @@ class LatticeRepair {
     lattice_.for_each_leaving(v, [&](Index h) {
       if (!lattice_.holes[h]) pieces.push_back(piece(h));
     });
+  }
+
+  /// Whether no triangle around v is flawed; if one is, `before_` gets them all.
+  bool is_sound(Index v) {
+    if (v >= sound_.size()) sound_.resize(map_.vertices(), 0);
+    if (sound_[v] > changed_[v]) return true;
+    star(v, before_);
+    if (flaws(before_) > 0) return false;
+    sound_[v] = now_ + 1;
+    return true;
   }
 
   /// Whether every vertex keeps its angle in the lattice when some triangles take the place of
@@ -98,7 +141,7 @@ class LatticeRepair {
     bool any = false;
     for (bool again = true; again;) {
       again = false;
-      for (Index h = 0; h < map_.halfedges(); ++h) {
+      for (Index h = 0; h < map_.halfedges(); h += 2) {
         if (map_.removed(h) || !lattice_.jumps[h / 2].is_zero()) continue;
         // Whoever covers more of the surface stays, on the border whoever lies there.
         const Index a = map_.origin(h), b = map_.target(h);
@@ -106,8 +149,9 @@ class LatticeRepair {
             std::tie(lattice_.clusters.cover, lattice_.clusters.on_border);
         const bool stays = border[a] != border[b] ? border[a] : cover[a] >= cover[b];
         const Index into = stays ? h : PolygonMap::twin(h);
-        if (!lattice_.may_collapse(into)) continue;
+        if (!is_news(zero_edges_, h / 2, {a, b}) || !lattice_.may_collapse(into)) continue;
         lattice_.collapse_edge(into);
+        touch_star(stays ? a : b);
         again = any = true;
       }
     }
@@ -120,7 +164,7 @@ class LatticeRepair {
       again = false;
       const auto count = static_cast<Index>(map_.halfedges());
       for (Index h = 0; h < count; h += 2) {
-        if (!lattice_.may_flip(h)) continue;
+        if (map_.removed(h) || !is_news(flips_, h) || !lattice_.may_flip(h)) continue;
         // The new edge may take its jump by way of either end of the old one.
         const double by_origin = flip_gain(h), by_target = flip_gain(h + 1);
         const Index better = by_origin >= by_target ? h : h + 1;
@@ -128,7 +172,12 @@ class LatticeRepair {
           if (std::max(by_origin, by_target) < least_gain) break;
           if ((side == h ? by_origin : by_target) < least_gain || !flip_keeps_angles(side))
             continue;
+          const Index twin = PolygonMap::twin(side);
+          const std::array<Index, 4> corners{map_.origin(h), map_.target(h),
+                                             map_.origin(map_.prev(side)),
+                                             map_.origin(map_.prev(twin))};
           lattice_.flip(side);
+          touch({corners[0], corners[1], corners[2], corners[3]});
           again = any = true;
           break;
         }
@@ -171,6 +220,7 @@ class LatticeRepair {
     for (Index h = 0; h < map_.halfedges(); ++h) {
       const Index t = PolygonMap::twin(h);
       if (map_.removed(h) || lattice_.holes[h] || lattice_.holes[t]) continue;
+      if (!is_news(swings_[h % 2], h)) continue;
       const std::array<Piece, 2> before{piece(h), piece(t)};
       if (!before[0].lattice.is_cone() || before[1].lattice.is_cone()) continue;
       const Jump back = composed(before[0].lattice.around[1], before[0].lattice.around[2], posy);
@@ -181,6 +231,8 @@ class LatticeRepair {
                           lattice_.metric().squared_length(back.t);
       if (gain < least_gain || !keeps_angles(before, after)) continue;
       lattice_.set_jump(t, back);
+      touch({map_.origin(h), map_.origin(t), map_.origin(map_.prev(h)),
+             map_.origin(map_.prev(t))});
       any = true;
     }
     return any;
@@ -190,11 +242,8 @@ class LatticeRepair {
   bool shift_vertices() {
     bool any = false;
     for (Index v = 0; v < map_.vertices(); ++v) {
-      if (map_.leaving(v) == no_index) continue;
-      star(v, before_);
-      double least = flaws(before_);
-      if (least == 0) continue;
-      least -= least_gain;
+      if (map_.leaving(v) == no_index || is_sound(v)) continue;
+      double least = flaws(before_) - least_gain;
       std::array<int, 2> best{0, 0};
       constexpr int reach = 2;
       for (int x = -reach; x <= reach; ++x) {
@@ -210,6 +259,7 @@ class LatticeRepair {
       }
       if (best == std::array<int, 2>{0, 0}) continue;
       lattice_.shift(v, best);
+      touch_star(v);
       any = true;
     }
     return any;
@@ -219,11 +269,8 @@ class LatticeRepair {
   bool collapse_flawed() {
     bool any = false;
     for (Index v = 0; v < map_.vertices(); ++v) {
-      if (map_.leaving(v) == no_index) continue;
-      star(v, before_);
-      double least = flaws(before_);
-      if (least == 0) continue;
-      least -= least_gain;
+      if (map_.leaving(v) == no_index || is_sound(v)) continue;
+      double least = flaws(before_) - least_gain;
       Index best = no_index;
       lattice_.for_each_leaving(v, [&](Index g) {
         const Index into = PolygonMap::twin(g);
@@ -235,7 +282,9 @@ class LatticeRepair {
         best = into;
       });
       if (best == no_index) continue;
+      const Index kept = map_.origin(best);
       lattice_.collapse_edge(best);
+      touch_star(kept);
       any = true;
     }
     return any;
@@ -270,6 +319,7 @@ class LatticeRepair {
       if (parts < 2) continue;
       const int first = parts / 2;
       lattice_.split(h, {t[0] / parts * first, t[1] / parts * first});
+      touch_star(map_.target(h));
       any = true;
     }
     if (any) return true;
@@ -324,6 +374,7 @@ class LatticeRepair {
     if (nearest_inside(h, c, {(b[0] + c[0]) / 3, (b[1] + c[1]) / 3}, t) > 1e29) return false;
     if (t == ac.t) return false;
     lattice_.insert(h, t, composed(reversed(Jump{0, t}, lattice_.posy), ac, lattice_.posy));
+    touch_star(map_.target(map_.next(h)));
     return true;
   }
 
@@ -364,6 +415,7 @@ class LatticeRepair {
     }
     if (best == nullptr) return false;
     lattice_.insert(edge, t, *best);
+    touch_star(map_.target(map_.next(edge)));
     return true;
   }
 
@@ -375,6 +427,10 @@ class LatticeRepair {
     double angle;
   };
   std::vector<Change> changes_;
+  std::uint32_t now_ = 0;               // the number of changes so far
+  std::vector<std::uint32_t> changed_;  // when each vertex's star last did
+  Looked zero_edges_, flips_, swings_[2];
+  std::vector<std::uint32_t> sound_;  // when each vertex's star was last found without flaw
 };
 
 }  // namespace

@@ -30,23 +30,6 @@ Jump jump_between(const Graph& graph, const OrientationField& orientation,
 
 }  // namespace
 
-std::array<int, 2> rotate_jump(std::array<int, 2> t, int rotation, int posy) {
-  for (int k = 0; k < rotation; ++k) {
-    t = posy == 4 ? std::array<int, 2>{-t[1], t[0]} : std::array<int, 2>{-t[1], t[0] + t[1]};
-  }
-  return t;
-}
-
-Jump reversed(const Jump& jump, int posy) {
-  const auto t = rotate_jump(jump.t, jump.rotation, posy);
-  return {(posy - jump.rotation) % posy, {-t[0], -t[1]}};
-}
-
-Jump composed(const Jump& ab, const Jump& bc, int posy) {
-  const auto t = rotate_jump(bc.t, (posy - ab.rotation) % posy, posy);
-  return {(ab.rotation + bc.rotation) % posy, {ab.t[0] + t[0], ab.t[1] + t[1]}};
-}
-
 Jump edge_jump(const Graph& graph, const OrientationField& orientation,
                const PositionField& position, PositionEnergy energy, Index i, Index j) {
   return with_posy(position.posy, [&]<int S>() {

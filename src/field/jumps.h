@@ -22,14 +22,29 @@ inline bool is_unit(const std::array<int, 2>& t, int posy) {
   return a * a + b * b + (posy == 6 ? a * b : 0) == 1;
 }
 
-/// Turns a lattice vector by `rotation` steps of 360 / posy degrees.
-std::array<int, 2> rotate_jump(std::array<int, 2> t, int rotation, int posy);
+/// Turns a lattice vector by `rotation` steps of 360 / posy degrees; 0 <= rotation <= posy.
+inline std::array<int, 2> rotate_jump(const std::array<int, 2>& t, int rotation, int posy) {
+  const int half = posy / 2;
+  const int sign = rotation >= half && rotation < posy ? -1 : 1;
+  const int x = sign * t[0], y = sign * t[1];
+  const int steps = rotation % half;
+  if (steps == 0) return {x, y};
+  if (posy == 4) return {-y, x};
+  return steps == 1 ? std::array<int, 2>{-y, x + y} : std::array<int, 2>{-x - y, x};
+}
 
 /// The jump back, in the frame of the other end.
-Jump reversed(const Jump& jump, int posy);
+inline Jump reversed(const Jump& jump, int posy) {
+  const auto t = rotate_jump(jump.t, jump.rotation, posy);
+  return {jump.rotation == 0 ? 0 : posy - jump.rotation, {-t[0], -t[1]}};
+}
 
 /// The jump a -> c by way of b, in the frame of a.
-Jump composed(const Jump& ab, const Jump& bc, int posy);
+inline Jump composed(const Jump& ab, const Jump& bc, int posy) {
+  const auto t = rotate_jump(bc.t, posy - ab.rotation, posy);
+  const int rotation = ab.rotation + bc.rotation;
+  return {rotation < posy ? rotation : rotation - posy, {ab.t[0] + t[0], ab.t[1] + t[1]}};
+}
 
 /// The jump from node i to node j, by the matching of the given energy.
 Jump edge_jump(const Graph& graph, const OrientationField& orientation,
