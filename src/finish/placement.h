@@ -19,6 +19,8 @@ class Placement {
   Vec3 place(const Vec3& p, std::size_t v);
 
   bool is_fixed(std::size_t v) const { return rails_.fixed[v]; }
+  /// Whether it may go anywhere on the surface.
+  bool is_free(std::size_t v) const { return !is_fixed(v) && rails_.seed[v] == no_index; }
 
   /// The normal of the surface where vertex v is.
   Vec3 normal(std::size_t v) const { return projector_.normal(extraction_.nodes[v]); }

@@ -43,21 +43,20 @@ void regular_targets(std::span<const Index> face, const std::vector<Vec3>& posit
   if (!(x.norm() > 0)) x = normal.unitOrthogonal();
   x.normalize();
   const Vec3 y = normal.cross(x);
-  const float step = 2 * std::numbers::pi_v<float> / static_cast<float>(n);
-  std::complex<float> coefficient = 0;
-  for (std::size_t k = 0; k < n; ++k) {
+  const float half_step = std::numbers::pi_v<float> / static_cast<float>(n);
+  const std::complex<float> step = std::polar(1.0f, 2 * half_step);
+  std::complex<float> coefficient = 0, turn = 1;
+  for (std::size_t k = 0; k < n; ++k, turn *= std::conj(step)) {
     const Vec3 d = positions[face[k]] - center;
-    coefficient +=
-        std::complex<float>(d.dot(x), d.dot(y)) * std::polar(1.0f, -step * static_cast<float>(k));
+    coefficient += std::complex<float>(d.dot(x), d.dot(y)) * turn;
   }
   coefficient /= static_cast<float>(n);
-  const float radius = side / (2 * std::sin(step / 2));
+  const float radius = side / (2 * std::sin(half_step));
   if (const float size = std::abs(coefficient); size > 0) {
     coefficient *= 1 - evenness + evenness * radius / size;
   }
-  for (std::size_t k = 0; k < n; ++k) {
-    const auto z = coefficient * std::polar(1.0f, step * static_cast<float>(k));
-    targets[k] = center + z.real() * x + z.imag() * y;
+  for (std::size_t k = 0; k < n; ++k, coefficient *= step) {
+    targets[k] = center + coefficient.real() * x + coefficient.imag() * y;
   }
 }
 
@@ -168,22 +167,32 @@ void Smoother::iterate(int iterations) {
   // Each step goes on in part where the last one went (Polyak's heavy ball): faults that reach far
   // then fade in as many iterations as they are edges wide, rather than in the square of that.
   constexpr float momentum = 0.9f;
-  std::vector<Vec3> next(mesh_.positions.size());
+  // Vertices move over the surface slowly: most steps stay on the plane that touches it where the
+  // vertex was a few steps ago.
+  constexpr int on_plane = 3;
+  std::vector<Vec3> next(mesh_.positions.size()), touched(mesh_.positions.size());
   normals_.resize(mesh_.positions.size());
-  for (int iteration = 0; iteration < iterations; ++iteration) {
+  const auto touch = [&](std::size_t v) {
+    touched[v] = mesh_.positions[v];
+    normals_[v] = placement_.normal(v);
+  };
+  for_vertices(touch);
+  for (int iteration = 1; iteration <= iterations; ++iteration) {
     context_.progress("smoothing", static_cast<double>(iteration) / iterations);
-    if (iteration % 4 == 0) {  // vertices move over the surface slowly
-      for_vertices([&](std::size_t v) { normals_[v] = placement_.normal(v); });
-    }
+    const bool exact = iteration % (on_plane + 1) == 0 || iteration == iterations;
     fit_polygons(mean_side(mesh_, options_.relative_size));
     for_vertices([&](std::size_t v) {
       const Vec3& p = mesh_.positions[v];
       Vec3 step = momentum * (p - previous_[v]);
       if (!around_[v].empty()) step += mean_target(static_cast<Index>(v)) - p;
-      next[v] = placement_.place(p + step, v);
+      const Vec3 q = p + step;
+      next[v] = exact || !placement_.is_free(v)
+                    ? placement_.place(q, v)
+                    : Vec3(q - normals_[v] * normals_[v].dot(q - touched[v]));
     });
     previous_.swap(mesh_.positions);
     mesh_.positions.swap(next);
+    if (exact) for_vertices(touch);
   }
 }
 
