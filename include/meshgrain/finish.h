@@ -24,7 +24,7 @@ struct SmoothOptions {
   int iterations = 60;
   /// How strongly faces are drawn to one size, 0 to 1: areas become more even, angles a little
   /// less.
-  double evenness = 0.6;
+  double evenness = 0.62;
   /// Chains of edges that lie on creases of a mechanical part sharper than this stay on them; < 0:
   /// none do.
   double crease_degrees = 40;
@@ -33,10 +33,11 @@ struct SmoothOptions {
 
 /// Evens the faces out: each iteration moves every vertex to the mean of where it would be in the
 /// regular polygons that fit its faces best, and back onto the surface. Border vertices move along
-/// the border, those on creases along the crease, and the ones at corners stay. At the end single
-/// faces that are turned over or nearly degenerate are mended, however many iterations there were
-/// (unless none). `surface` is the
-/// triangle mesh or point cloud that `graph` was built on.
+/// the border, those on creases along the crease, and the ones at corners stay. Where a finger or
+/// horn of the surface would be left bare by more than an edge length, a vertex is held out there.
+/// At the end single faces that are turned over or nearly degenerate are mended, however many
+/// iterations there were (unless none). `surface` is the triangle mesh or point cloud that `graph`
+/// was built on.
 void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
             const SmoothOptions& options = {}, const Context& context = Context());
 

@@ -19,4 +19,10 @@ Vec3 Placement::place(const Vec3& p, std::size_t v) {
                              : projector_.project(p, extraction_.nodes[v]);
 }
 
+void Placement::pin(std::size_t v, const Vec3& p, Index node) {
+  extraction_.mesh.positions[v] = p;
+  extraction_.nodes[v] = node;
+  rails_.fixed[v] = 1;
+}
+
 }  // namespace meshgrain

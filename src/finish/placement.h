@@ -22,6 +22,9 @@ class Placement {
   /// Whether it may go anywhere on the surface.
   bool is_free(std::size_t v) const { return !is_fixed(v) && rails_.seed[v] == no_index; }
 
+  /// Holds v at a point of the surface, near a node of it.
+  void pin(std::size_t v, const Vec3& p, Index node);
+
   /// The normal of the surface where vertex v is.
   Vec3 normal(std::size_t v) const { return projector_.normal(extraction_.nodes[v]); }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "finish/bare_ends.h"
 #include "finish/placement.h"
 #include "finish/untangle.h"
 #include "mesh/vertex_faces.h"
@@ -81,8 +82,8 @@ float mean_side(const Mesh& mesh, const EdgeLength& relative) {
   return wanted > 0 ? static_cast<float>(std::sqrt(area / wanted)) : 0.0f;
 }
 
-/// Each iteration fits a regular polygon to every face, moves each vertex to
-/// the mean of its places in those, and back onto the surface.
+/// Each iteration fits a regular polygon to every face, moves each vertex to the mean of its places
+/// in those, and back onto the surface.
 class Smoother {
  public:
   /// Puts all vertices onto the surface.
@@ -90,6 +91,9 @@ class Smoother {
            const SmoothOptions& options, const Context& context);
 
   void iterate(int iterations);
+
+  /// Pulls the mesh out to the ends of fingers and horns, and holds it there.
+  void hold_ends();
 
   /// Mends single faces that are turned over or nearly degenerate.
   void untangle();
@@ -102,6 +106,8 @@ class Smoother {
 
   Extraction& extraction_;
   Mesh& mesh_;
+  const Graph& graph_;
+  bool nodes_are_vertices_;
   const SmoothOptions& options_;
   const Context& context_;
   Placement placement_;
@@ -115,6 +121,8 @@ Smoother::Smoother(Extraction& extraction, const Mesh& surface, const Graph& gra
                    const SmoothOptions& options, const Context& context)
     : extraction_(extraction),
       mesh_(extraction.mesh),
+      graph_(graph),
+      nodes_are_vertices_(graph.size() == surface.positions.size()),
       options_(options),
       context_(context),
       placement_(extraction, surface, graph, options.crease_degrees, context),
@@ -167,32 +175,49 @@ void Smoother::iterate(int iterations) {
   // Each step goes on in part where the last one went (Polyak's heavy ball): faults that reach far
   // then fade in as many iterations as they are edges wide, rather than in the square of that.
   constexpr float momentum = 0.9f;
-  // Vertices move over the surface slowly: most steps stay on the plane that touches it where the
-  // vertex was a few steps ago.
+  // Vertices move over the surface slowly: where it is smooth, most steps stay on the plane that
+  // touched it a few steps ago.
   constexpr int on_plane = 3;
-  std::vector<Vec3> next(mesh_.positions.size()), touched(mesh_.positions.size());
-  normals_.resize(mesh_.positions.size());
-  const auto touch = [&](std::size_t v) {
-    touched[v] = mesh_.positions[v];
-    normals_[v] = placement_.normal(v);
-  };
-  for_vertices(touch);
+  constexpr float smooth_enough = 0.1f;  // how far the surface may leave that plane, in edges
+  const std::size_t count = mesh_.positions.size();
+  std::vector<Vec3> next(count), touched(count);
+  std::vector<std::uint8_t> is_smooth(count, 0);
+  normals_.resize(count);
+  for_vertices([&](std::size_t v) { normals_[v] = placement_.normal(v); });
   for (int iteration = 1; iteration <= iterations; ++iteration) {
     context_.progress("smoothing", static_cast<double>(iteration) / iterations);
-    const bool exact = iteration % (on_plane + 1) == 0 || iteration == iterations;
-    fit_polygons(mean_side(mesh_, options_.relative_size));
+    const bool exact = iteration % (on_plane + 1) == 1 || iteration == iterations;
+    const float side = mean_side(mesh_, options_.relative_size);
+    fit_polygons(side);
     for_vertices([&](std::size_t v) {
       const Vec3& p = mesh_.positions[v];
-      Vec3 step = momentum * (p - previous_[v]);
-      if (!around_[v].empty()) step += mean_target(static_cast<Index>(v)) - p;
-      const Vec3 q = p + step;
-      next[v] = exact || !placement_.is_free(v)
-                    ? placement_.place(q, v)
-                    : Vec3(q - normals_[v] * normals_[v].dot(q - touched[v]));
+      Vec3 q = p + momentum * (p - previous_[v]);
+      if (!around_[v].empty()) q += mean_target(static_cast<Index>(v)) - p;
+      const Vec3 beside = q - normals_[v] * normals_[v].dot(q - touched[v]);
+      if (!exact && is_smooth[v]) {
+        next[v] = beside;
+        return;
+      }
+      next[v] = placement_.place(q, v);
+      if (!exact) return;
+      is_smooth[v] = iteration > 1 && placement_.is_free(v) &&
+                     (next[v] - beside).norm() < smooth_enough * side;
+      touched[v] = next[v];
     });
+    // What touched there has the normal there.
+    if (exact) for_vertices([&](std::size_t v) { normals_[v] = placement_.normal(v); });
     previous_.swap(mesh_.positions);
     mesh_.positions.swap(next);
-    if (exact) for_vertices(touch);
+  }
+}
+
+void Smoother::hold_ends() {
+  if (!nodes_are_vertices_) return;
+  const float side = mean_side(mesh_, options_.relative_size);
+  for (const Reach& end : find_bare_ends(extraction_, around_, graph_, side, context_)) {
+    if (!placement_.is_free(end.vertex)) continue;
+    placement_.pin(end.vertex, end.position, end.node);
+    previous_[end.vertex] = end.position;
   }
 }
 
@@ -206,7 +231,11 @@ void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
             const SmoothOptions& options, const Context& context) {
   Smoother smoother(extraction, surface, graph, options, context);
   if (options.iterations == 0) return;
-  smoother.iterate(options.iterations);
+  // Even sizes draw the surface's ends in first of all, so that they show early.
+  const int first = options.iterations / 3;
+  smoother.iterate(first);
+  smoother.hold_ends();
+  smoother.iterate(options.iterations - first);
   smoother.untangle();
 }
 

@@ -1,0 +1,120 @@
+#include "finish/bare_ends.h"
+
+#include <algorithm>
+#include <limits>
+#include <queue>
+#include <utility>
+
+#include "util/triangle.h"
+
+namespace meshgrain {
+namespace {
+
+/// The nodes of a graph by their way to the nearest vertex of a mesh (Dijkstra's algorithm).
+struct Ways {
+  std::vector<float> length;
+  std::vector<Index> vertex;  // the nearest
+  std::vector<Index> before;  // the node before on the way from there, or no_index
+};
+
+Ways ways_from_vertices(const Extraction& extraction, const Graph& graph, const Context& context) {
+  const std::size_t n = graph.size();
+  Ways ways{std::vector<float>(n, std::numeric_limits<float>::infinity()),
+            std::vector<Index>(n, no_index), std::vector<Index>(n, no_index)};
+  using Entry = std::pair<float, Index>;
+  std::vector<Entry> sources;
+  const auto reach = [&](Index node, float length, Index vertex, Index before) {
+    if (length >= ways.length[node]) return false;
+    ways.length[node] = length;
+    ways.vertex[node] = vertex;
+    ways.before[node] = before;
+    return true;
+  };
+  for (Index v = 0; v < extraction.nodes.size(); ++v) {
+    const Index node = extraction.nodes[v];
+    const float length = (extraction.mesh.positions[v] - graph.positions[node]).norm();
+    if (reach(node, length, v, no_index)) sources.push_back({length, node});
+  }
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue(std::greater<>(),
+                                                                       std::move(sources));
+  std::size_t done = 0;
+  while (!queue.empty()) {
+    const auto [length, i] = queue.top();
+    queue.pop();
+    if (length > ways.length[i]) continue;
+    if ((++done & 0xffff) == 0) context.check();
+    for (const Index j : graph.neighbors_of(i)) {
+      const float farther = length + (graph.positions[j] - graph.positions[i]).norm();
+      if (reach(j, farther, ways.vertex[i], i)) queue.push({farther, j});
+    }
+  }
+  return ways;
+}
+
+/// The distance from a point to the faces around a vertex and its neighbours.
+float distance_to_star(const Vec3& p, const Mesh& mesh, const VertexFaces& around, Index vertex) {
+  float least = (p - mesh.positions[vertex]).squaredNorm();
+  for (const Index f : around[vertex]) {
+    for (const Index v : mesh.faces[f]) {
+      for (const Index g : around[v]) {
+        const auto face = mesh.faces[g];
+        for (std::size_t k = 2; k < face.size(); ++k) {
+          const Vec3 q = closest_point_on_triangle(p, mesh.positions[face[0]],
+                                                   mesh.positions[face[k - 1]],
+                                                   mesh.positions[face[k]]);
+          least = std::min(least, (p - q).squaredNorm());
+        }
+      }
+    }
+  }
+  return std::sqrt(least);
+}
+
+}  // namespace
+
+std::vector<Reach> find_bare_ends(const Extraction& extraction, const VertexFaces& around,
+                                  const Graph& graph, float reach, const Context& context) {
+  const Ways ways = ways_from_vertices(extraction, graph, context);
+  struct Tip {
+    float distance;
+    Index node;
+  };
+  std::vector<Tip> tips;
+  for (Index i = 0; i < graph.size(); ++i) {
+    if (!(ways.length[i] > reach) || ways.vertex[i] == no_index) continue;
+    const auto neighbors = graph.neighbors_of(i);
+    if (std::any_of(neighbors.begin(), neighbors.end(),
+                    [&](Index j) { return ways.length[j] > ways.length[i]; })) {
+      continue;
+    }
+    const float distance =
+        distance_to_star(graph.positions[i], extraction.mesh, around, ways.vertex[i]);
+    if (distance > reach) tips.push_back({distance, i});
+  }
+  std::sort(tips.begin(), tips.end(), [](const Tip& a, const Tip& b) {
+    return std::pair(b.distance, a.node) < std::pair(a.distance, b.node);
+  });
+  std::vector<Reach> result;
+  std::vector<Vec3> taken;
+  for (const Tip& tip : tips) {
+    const Vec3& end = graph.positions[tip.node];
+    if (std::any_of(taken.begin(), taken.end(),
+                    [&](const Vec3& other) { return (end - other).norm() < 2 * reach; })) {
+      continue;
+    }
+    taken.push_back(end);
+    Index node = tip.node, outer = tip.node;
+    const auto distance = [&](Index i) { return (graph.positions[i] - end).norm(); };
+    while (distance(node) < reach && ways.before[node] != no_index) {
+      outer = std::exchange(node, ways.before[node]);
+    }
+    const float inner = distance(node) - reach, over = reach - distance(outer);
+    const float share = inner > 0 ? inner / (inner + over) : 0.0f;
+    result.push_back({ways.vertex[tip.node], share < 0.5f ? node : outer,
+                      graph.positions[node] +
+                          share * (graph.positions[outer] - graph.positions[node])});
+  }
+  return result;
+}
+
+}  // namespace meshgrain

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "mesh/vertex_faces.h"
+#include "meshgrain/context.h"
+#include "meshgrain/extract.h"
+#include "meshgrain/graph.h"
+
+namespace meshgrain {
+
+/// A vertex of the mesh that should reach farther out, and where to.
+struct Reach {
+  Index vertex;
+  Index node;  ///< The nearest one of the surface.
+  Vec3 position;
+};
+
+/// Where fingers, horns and ears of the surface stick out of the mesh by more than `reach`: the
+/// vertex nearest to each tip, and the node on the way there from which the tip is that far away.
+/// `graph` is that of the surface's vertices, and `around` holds the faces of the mesh.
+std::vector<Reach> find_bare_ends(const Extraction& extraction, const VertexFaces& around,
+                                  const Graph& graph, float reach, const Context& context);
+
+}  // namespace meshgrain
