@@ -1,5 +1,7 @@
 #include "finish/placement.h"
 
+#include <utility>
+
 namespace meshgrain {
 
 Placement::Placement(Extraction& extraction, const Mesh& surface, const Graph& graph,
@@ -23,6 +25,13 @@ void Placement::pin(std::size_t v, const Vec3& p, Index node) {
   extraction_.mesh.positions[v] = p;
   extraction_.nodes[v] = node;
   rails_.fixed[v] = 1;
+}
+
+bool Placement::release(std::size_t v) {
+  if (rails_.seed[v] == no_index) return false;
+  extraction_.nodes[v] = std::exchange(rails_.seed[v], no_index);
+  rails_.fixed[v] = 0;
+  return true;
 }
 
 }  // namespace meshgrain

@@ -25,6 +25,9 @@ class Placement {
   /// Holds v at a point of the surface, near a node of it.
   void pin(std::size_t v, const Vec3& p, Index node);
 
+  /// Lets v leave the line that holds it. Returns whether there was one.
+  bool release(std::size_t v);
+
   /// The normal of the surface where vertex v is.
   Vec3 normal(std::size_t v) const { return projector_.normal(extraction_.nodes[v]); }
 

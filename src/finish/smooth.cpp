@@ -232,10 +232,11 @@ void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
   Smoother smoother(extraction, surface, graph, options, context);
   if (options.iterations == 0) return;
   // Even sizes draw the surface's ends in first of all, so that they show early.
-  const int first = options.iterations / 3;
-  smoother.iterate(first);
-  smoother.hold_ends();
-  smoother.iterate(options.iterations - first);
+  constexpr int parts = 3;
+  for (int part = 0; part < parts; ++part) {
+    if (part > 0) smoother.hold_ends();
+    smoother.iterate(options.iterations * (part + 1) / parts - options.iterations * part / parts);
+  }
   smoother.untangle();
 }
 

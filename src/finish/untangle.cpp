@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <utility>
 
@@ -49,11 +50,25 @@ class Untangling {
       mean_area_ += area_vector(std::as_const(mesh_.faces)[f], mesh_.positions).norm() /
                     static_cast<float>(mesh_.faces.size());
     }
+    tried_.resize(mesh_.positions.size(), 0);
+    moved_.resize(mesh_.positions.size(), 0);
+    normals_.resize(mesh_.positions.size());
+    for (Index v = 0; v < normals_.size(); ++v) normals_[v] = placement_.normal(v);
     quality_.resize(mesh_.faces.size());
     for (Index f = 0; f < quality_.size(); ++f) quality_[f] = quality(f);
   }
 
-  std::size_t run(const Context& context) {
+  void run(const Context& context) {
+    sweep(context);
+    // A face before a feature is a face first.
+    if (release_vertices()) sweep(context);
+  }
+
+ private:
+  static constexpr float wanted = 0.75f;      // quality below which a face is looked at
+  static constexpr float acceptable = 0.15f;  // below which its vertices leave their features
+
+  void sweep(const Context& context) {
     constexpr int sweeps = 30;
     for (int sweep = 0; sweep < sweeps; ++sweep) {
       context.check();
@@ -71,21 +86,44 @@ class Untangling {
       }
       std::sort(vertices.begin(), vertices.end());
       vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-      bool moved = false;
-      for (const Index v : vertices) moved = improve(v) || moved;
-      if (!moved) break;
+      const std::uint32_t before = now_;
+      for (const Index v : vertices) {
+        if (!has_news(v)) continue;
+        tried_[v] = ++now_;
+        if (improve(v)) moved_[v] = ++now_;
+      }
+      const bool any = std::any_of(vertices.begin(), vertices.end(),
+                                   [&](Index v) { return moved_[v] > before; });
+      if (!any) break;
     }
-    return static_cast<std::size_t>(
-        std::count_if(quality_.begin(), quality_.end(), [](float q) { return q <= 0; }));
   }
 
- private:
-  static constexpr float wanted = 0.5f;
+  /// Whether something has moved around v since it was last tried.
+  bool has_news(Index v) const {
+    if (tried_[v] == 0) return true;
+    for (const Index f : around_[v]) {
+      for (const Index w : std::as_const(mesh_.faces)[f]) {
+        if (moved_[w] > tried_[v]) return true;
+      }
+    }
+    return false;
+  }
+
+  bool release_vertices() {
+    const std::uint32_t before = now_;
+    for (Index f = 0; f < quality_.size(); ++f) {
+      if (quality_[f] >= acceptable) continue;
+      for (const Index v : std::as_const(mesh_.faces)[f]) {
+        if (placement_.release(v)) moved_[v] = ++now_;
+      }
+    }
+    return now_ > before;
+  }
 
   float quality(Index f) const {
     const auto face = std::as_const(mesh_.faces)[f];
     Vec3 upward = Vec3::Zero();
-    for (const Index v : face) upward += placement_.normal(v);
+    for (const Index v : face) upward += normals_[v];
     return face_quality(face, mesh_.positions, upward.normalized());
   }
 
@@ -97,7 +135,7 @@ class Untangling {
       const double best =
           std::sin(2 * std::numbers::pi / static_cast<double>(mesh_.faces.degree(f)));
       const double irregular = std::max(0.0, best - q), bad = std::max(0.0, wanted - q);
-      sum += irregular * irregular + 20 * bad * bad;
+      sum += irregular * irregular + 10 * bad * bad;
       const float area = area_vector(std::as_const(mesh_.faces)[f], mesh_.positions).norm();
       const double uneven = std::log(std::max(area / mean_area_, 1e-3f));
       sum += 0.1 * uneven * uneven;
@@ -109,8 +147,7 @@ class Untangling {
     if (placement_.is_fixed(v) || around_[v].empty()) return false;
     const double before = lack(v);
     if (before < 1e-6) return false;
-    const Vec3 normal = placement_.normal(v);
-    const Vec3 x = any_tangent(normal), y = normal.cross(x);
+    const Vec3 x = any_tangent(normals_[v]), y = normals_[v].cross(x);
     float length = 0;
     for (const Index f : around_[v]) {
       const auto face = std::as_const(mesh_.faces)[f];
@@ -153,6 +190,7 @@ class Untangling {
     mesh_.positions[v] = best;
     placement_.set_seed(v, best_seed);
     if (least > 0.99 * before) return false;
+    normals_[v] = placement_.normal(v);
     for (const Index f : around_[v]) quality_[f] = quality(f);
     return true;
   }
@@ -161,14 +199,17 @@ class Untangling {
   const VertexFaces& around_;
   Placement& placement_;
   std::vector<float> quality_;  // of each face
+  std::vector<Vec3> normals_;   // of the surface, where each vertex is
   float mean_area_ = 0;
+  std::uint32_t now_ = 0;                      // counts tries and moves
+  std::vector<std::uint32_t> tried_, moved_;  // when each vertex last was
 };
 
 }  // namespace
 
-std::size_t untangle(Extraction& extraction, const VertexFaces& around, Placement& placement,
-                     const Context& context) {
-  return Untangling(extraction, around, placement).run(context);
+void untangle(Extraction& extraction, const VertexFaces& around, Placement& placement,
+              const Context& context) {
+  Untangling(extraction, around, placement).run(context);
 }
 
 }  // namespace meshgrain

@@ -6,8 +6,8 @@
 namespace meshgrain {
 
 /// Moves single vertices of bad faces, turned over or nearly degenerate, to where the worst of the
-/// faces around them is best. Returns how many faces stay turned over.
-std::size_t untangle(Extraction& extraction, const VertexFaces& around, Placement& placement,
-                     const Context& context);
+/// faces around them is best. Faces that stay bad let go of the features that hold them.
+void untangle(Extraction& extraction, const VertexFaces& around, Placement& placement,
+              const Context& context);
 
 }  // namespace meshgrain
