@@ -213,8 +213,8 @@ class Pipeline {
       SmoothOptions smoothing;
       smoothing.iterations = options_.smoothing;
       // Triangles of one size are regular; the triangles among quads are smaller than these.
-      if (options_.faces == OutputFaces::triangles) smoothing.evenness = 0.7;
-      if (options_.faces == OutputFaces::quad_dominant) smoothing.evenness = 0.54;
+      if (options_.faces == OutputFaces::triangles) smoothing.evenness = 0.75;
+      if (options_.faces == OutputFaces::quad_dominant) smoothing.evenness = 0.5;
       const EdgeLength& lengths = fields().position.edge_length;
       if (!lengths.uniform() && nodes_are_vertices_) {
         std::vector<float> sizes;

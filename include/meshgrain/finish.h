@@ -24,7 +24,7 @@ struct SmoothOptions {
   int iterations = 60;
   /// How strongly faces are drawn to one size, 0 to 1: areas become more even, angles a little
   /// less.
-  double evenness = 0.62;
+  double evenness = 0.65;
   /// Chains of edges that lie on creases of a mechanical part sharper than this stay on them; < 0:
   /// none do.
   double crease_degrees = 40;

@@ -1,6 +1,7 @@
 #include "extract/lattice_mesh.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "field/rosy.h"
@@ -13,6 +14,7 @@ LatticeMesh::LatticeMesh(JumpMap&& shrunk, Clusters&& clusters_of_vertices,
     : JumpMap(std::move(shrunk)), clusters(std::move(clusters_of_vertices)) {
   directions_.resize(roots.size());
   lengths_.resize(roots.size());
+  reach_.resize(roots.size(), 0);
   for (std::size_t v = 0; v < roots.size(); ++v) {
     const Index root = roots[v];
     directions_[v] =
@@ -86,13 +88,22 @@ void LatticeMesh::add_edge(Index from, Index to, const Jump& jump) {
   set_jump(added, jump);
 }
 
+float LatticeMesh::reach_with_target(Index h) const {
+  const Index a = map.origin(h), b = map.target(h);
+  const float step = (clusters.positions[a] - clusters.positions[b]).norm() / lengths_[a];
+  return std::max(reach_[a], reach_[b] + step);
+}
+
 bool LatticeMesh::may_collapse(Index h) {
+  constexpr float farthest = 2;
   if (clusters.on_border[map.target(h)] && !clusters.on_border[map.origin(h)]) return false;
+  if (reach_with_target(h) > farthest) return false;
   return link_.holds(map, holes, h);
 }
 
 void LatticeMesh::collapse_edge(Index h) {
   clusters.cover[map.origin(h)] += clusters.cover[map.target(h)];
+  reach_[map.origin(h)] = reach_with_target(h);
   collapse(h, [&](Index from, Index to, const Jump& x, const Jump& y) {
     const Vec3 d = (clusters.positions[to] - clusters.positions[from]) / lengths_[from];
     const LatticePoint real = coordinates(d, from);
@@ -111,6 +122,7 @@ void LatticeMesh::add_vertex(Index like, const Vec3& position, bool on_border) {
   clusters.on_border.push_back(on_border);
   directions_.push_back(directions_[like]);
   lengths_.push_back(lengths_[like]);
+  reach_.push_back(0);
 }
 
 void LatticeMesh::split(Index h, const std::array<int, 2>& t) {

@@ -49,6 +49,8 @@ class LatticeMesh : public JumpMap {
   /// The jump that flip(h) gives, from the apex on the side of h.
   Jump flipped_jump(Index h) const;
 
+  /// Whether that is a triangle mesh still, and nothing has to reach far: a finger of the surface
+  /// must not vanish vertex by vertex.
   bool may_collapse(Index h);
   /// The target of h vanishes.
   void collapse_edge(Index h);
@@ -63,12 +65,16 @@ class LatticeMesh : public JumpMap {
   void shift(Index vertex, const std::array<int, 2>& t);
 
  private:
+  /// How far the origin of h would stand, in edge lengths, from the farthest vertex that went into
+  /// it, if the target did too.
+  float reach_with_target(Index h) const;
   LatticePoint coordinates(const Vec3& d, Index vertex) const;
   void add_vertex(Index like, const Vec3& position, bool on_border);
   void add_edge(Index from, Index to, const Jump& jump);
 
   std::vector<Vec3> directions_;
   std::vector<float> lengths_;
+  std::vector<float> reach_;  // of each vertex: see reach_with_target()
   LinkCondition link_;
 };
 

@@ -112,7 +112,8 @@ std::vector<Reach> find_bare_ends(const Extraction& extraction, const VertexFace
     const float share = inner > 0 ? inner / (inner + over) : 0.0f;
     result.push_back({ways.vertex[tip.node], share < 0.5f ? node : outer,
                       graph.positions[node] +
-                          share * (graph.positions[outer] - graph.positions[node])});
+                          share * (graph.positions[outer] - graph.positions[node]),
+                      end});
   }
   return result;
 }

@@ -14,6 +14,7 @@ struct Reach {
   Index vertex;
   Index node;  ///< The nearest one of the surface.
   Vec3 position;
+  Vec3 tip;
 };
 
 /// Where fingers, horns and ears of the surface stick out of the mesh by more than `reach`: the

@@ -10,21 +10,28 @@ Placement::Placement(Extraction& extraction, const Mesh& surface, const Graph& g
       surface_(surface),
       projector_(surface, graph, context),
       lines_(surface, crease_degrees, context),
-      rails_(attach_to_lines(extraction, surface, lines_)) {}
+      rails_(attach_to_lines(extraction, surface, lines_)),
+      tether_(extraction.mesh.positions.size(), no_index) {}
 
 Vec3 Placement::place(const Vec3& p, std::size_t v) {
   Index& on_line = rails_.seed[v];
   if (rails_.fixed[v]) {
     return on_line != no_index ? surface_.positions[on_line] : extraction_.mesh.positions[v];
   }
-  return on_line != no_index ? lines_.project(p, on_line)
-                             : projector_.project(p, extraction_.nodes[v]);
+  if (on_line != no_index) return lines_.project(p, on_line);
+  const Vec3 q = projector_.project(p, extraction_.nodes[v]);
+  if (tether_[v] == no_index) return q;
+  const auto& [end, radius] = tethers_[tether_[v]];
+  const float distance = (q - end).norm();
+  if (distance <= radius) return q;
+  return projector_.project(end + (radius / distance) * (q - end), extraction_.nodes[v]);
 }
 
-void Placement::pin(std::size_t v, const Vec3& p, Index node) {
+void Placement::tether(std::size_t v, const Vec3& p, Index node, const Vec3& end, float radius) {
   extraction_.mesh.positions[v] = p;
   extraction_.nodes[v] = node;
-  rails_.fixed[v] = 1;
+  tether_[v] = static_cast<Index>(tethers_.size());
+  tethers_.push_back({end, radius});
 }
 
 bool Placement::release(std::size_t v) {

@@ -20,10 +20,13 @@ class Placement {
 
   bool is_fixed(std::size_t v) const { return rails_.fixed[v]; }
   /// Whether it may go anywhere on the surface.
-  bool is_free(std::size_t v) const { return !is_fixed(v) && rails_.seed[v] == no_index; }
+  bool is_free(std::size_t v) const {
+    return !is_fixed(v) && rails_.seed[v] == no_index && tether_[v] == no_index;
+  }
 
-  /// Holds v at a point of the surface, near a node of it.
-  void pin(std::size_t v, const Vec3& p, Index node);
+  /// Moves v to a point of the surface, near a node of it; from then on it stays within `radius` of
+  /// `end`.
+  void tether(std::size_t v, const Vec3& p, Index node, const Vec3& end, float radius);
 
   /// Lets v leave the line that holds it. Returns whether there was one.
   bool release(std::size_t v);
@@ -42,11 +45,18 @@ class Placement {
   }
 
  private:
+  struct Tether {
+    Vec3 end;
+    float radius;
+  };
+
   Extraction& extraction_;
   const Mesh& surface_;
   Projector projector_;
   FeatureLines lines_;
   Rails rails_;
+  std::vector<Tether> tethers_;
+  std::vector<Index> tether_;  // of each vertex, or no_index
 };
 
 }  // namespace meshgrain

@@ -216,7 +216,7 @@ void Smoother::hold_ends() {
   const float side = mean_side(mesh_, options_.relative_size);
   for (const Reach& end : find_bare_ends(extraction_, around_, graph_, side, context_)) {
     if (!placement_.is_free(end.vertex)) continue;
-    placement_.pin(end.vertex, end.position, end.node);
+    placement_.tether(end.vertex, end.position, end.node, end.tip, side);
     previous_[end.vertex] = end.position;
   }
 }
