@@ -212,7 +212,11 @@ class Pipeline {
       if (options_.faces == OutputFaces::quads) split_into_quads(extraction_);
       SmoothOptions smoothing;
       smoothing.iterations = options_.smoothing;
-      // Triangles of one size are regular; the triangles among quads are smaller than these.
+      // The more regular, the more the grid must stretch. Triangles of one size are regular; the
+      // triangles among quads are smaller than these.
+      if (options_.faces == OutputFaces::quads) {
+        smoothing.evenness = 0.58 + 0.12 * options_.regularity;
+      }
       if (options_.faces == OutputFaces::triangles) smoothing.evenness = 0.75;
       if (options_.faces == OutputFaces::quad_dominant) smoothing.evenness = 0.5;
       const EdgeLength& lengths = fields().position.edge_length;
@@ -258,10 +262,10 @@ class Pipeline {
   /// their edges, so that there the same cost bends the surface's grid over a longer way.
   double cancelling_cost() const {
     if (options_.regularity >= 1) return std::numeric_limits<double>::infinity();
-    const double least = options_.faces == OutputFaces::quads           ? 4
-                         : options_.faces == OutputFaces::quad_dominant ? 8
-                                                                        : 9.5;
-    return least / std::pow(1 - options_.regularity, 0.9);
+    const double least = options_.faces == OutputFaces::quads           ? 2.5
+                         : options_.faces == OutputFaces::quad_dominant ? 5
+                                                                        : 6;
+    return least * (1 + 2 * options_.regularity / (1 - options_.regularity));
   }
 
   Extraction extract(const PositionField& positions) {
