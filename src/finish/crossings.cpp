@@ -1,0 +1,157 @@
+#include "finish/crossings.h"
+
+#include <tbb/parallel_sort.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <tuple>
+
+namespace meshgrain {
+namespace {
+
+using Corners = std::array<Index, 3>;
+
+/// The triangles of a face: of a quad, those on either side of both diagonals.
+template <typename Body>
+void for_each_triangle(std::span<const Index> face, const Body& body) {
+  for (std::size_t k = 2; k < face.size(); ++k) body(Corners{face[0], face[k - 1], face[k]});
+  if (face.size() != 4) return;
+  body(Corners{face[1], face[2], face[3]});
+  body(Corners{face[1], face[3], face[0]});
+}
+
+/// How far the nearer end of a segment lies beyond a triangle that it passes through, else 0.
+double depth(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Eigen::Vector3d origin = a.cast<double>();
+  const auto from_origin = [&](const Vec3& x) { return Eigen::Vector3d(x.cast<double>() - origin); };
+  const Eigen::Vector3d u = from_origin(b), v = from_origin(c), s = from_origin(p),
+                        t = from_origin(q);
+  const Eigen::Vector3d normal = u.cross(v);
+  const double ds = normal.dot(s), dt = normal.dot(t);
+  if (!(ds * dt < 0)) return 0;
+  const Eigen::Vector3d x = s + ds / (ds - dt) * (t - s);
+  if (normal.dot(u.cross(x)) < 0 || normal.dot((v - u).cross(x - u)) < 0 ||
+      normal.dot(x.cross(v)) < 0) {
+    return 0;
+  }
+  return std::min(std::abs(ds), std::abs(dt)) / normal.norm();
+}
+
+double triangle_penetration(const std::vector<Vec3>& positions, const Corners& t,
+                            const Corners& u) {
+  int shared = 0, own = 0, other = 0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (t[i] != u[j]) continue;
+      ++shared;
+      own = i;
+      other = j;
+    }
+  }
+  if (shared > 1) return 0;
+  const auto edge_through = [&](const Corners& from, int k, const Corners& to) {
+    return depth(positions[from[k]], positions[from[(k + 1) % 3]], positions[to[0]],
+                 positions[to[1]], positions[to[2]]);
+  };
+  // At a shared corner only the edges opposite of it can pass through.
+  if (shared == 1) return edge_through(t, (own + 1) % 3, u) + edge_through(u, (other + 1) % 3, t);
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) sum += edge_through(t, k, u) + edge_through(u, k, t);
+  return sum;
+}
+
+struct Box {
+  Vec3 low, high;
+};
+
+Box box_of(const Mesh& mesh, Index f) {
+  const auto face = mesh.faces[f];
+  Box box{mesh.positions[face[0]], mesh.positions[face[0]]};
+  for (const Index v : face) {
+    box.low = box.low.cwiseMin(mesh.positions[v]);
+    box.high = box.high.cwiseMax(mesh.positions[v]);
+  }
+  return box;
+}
+
+bool overlap(const Box& a, const Box& b) {
+  return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
+}
+
+}  // namespace
+
+double penetration(const Mesh& mesh, Index f, Index g) {
+  if (f == g || !overlap(box_of(mesh, f), box_of(mesh, g))) return 0;
+  double sum = 0;
+  for_each_triangle(mesh.faces[f], [&](const Corners& t) {
+    for_each_triangle(mesh.faces[g], [&](const Corners& u) {
+      sum += triangle_penetration(mesh.positions, t, u);
+    });
+  });
+  return sum;
+}
+
+std::vector<std::array<Index, 2>> find_crossings(const Mesh& mesh, const Context& context) {
+  // The faces by the cells of a grid that their boxes touch. Two meet in the cell of the highest
+  // of their low corners, and are compared there only.
+  const auto count = static_cast<Index>(mesh.faces.size());
+  std::vector<Box> boxes(count);
+  double size = 0;
+  Vec3 lowest = Vec3::Constant(std::numeric_limits<float>::infinity());
+  for (Index f = 0; f < count; ++f) {
+    boxes[f] = box_of(mesh, f);
+    lowest = lowest.cwiseMin(boxes[f].low);
+    size += (boxes[f].high - boxes[f].low).maxCoeff() / static_cast<double>(count);
+  }
+  if (!(size > 0)) return {};
+  const auto cell = [&](const Vec3& p, int axis) {
+    return static_cast<std::uint64_t>((p[axis] - lowest[axis]) / (1.5 * size));
+  };
+  const auto key = [](std::uint64_t x, std::uint64_t y, std::uint64_t z) {
+    return (x << 42) | (y << 21) | z;
+  };
+  struct Entry {
+    std::uint64_t cell;
+    Index face;
+    bool operator<(const Entry& o) const { return std::tie(cell, face) < std::tie(o.cell, o.face); }
+  };
+  std::vector<Entry> entries;
+  for (Index f = 0; f < count; ++f) {
+    const auto& [low, high] = boxes[f];
+    for (auto x = cell(low, 0); x <= cell(high, 0); ++x) {
+      for (auto y = cell(low, 1); y <= cell(high, 1); ++y) {
+        for (auto z = cell(low, 2); z <= cell(high, 2); ++z) entries.push_back({key(x, y, z), f});
+      }
+    }
+  }
+  context.run([&] { tbb::parallel_sort(entries); });
+  std::vector<std::uint8_t> crosses(entries.size(), 0);
+  const auto for_each_partner = [&](std::size_t e, const auto& body) {
+    const auto& [own, f] = entries[e];
+    for (std::size_t o = e + 1; o < entries.size() && entries[o].cell == own; ++o) {
+      const Index g = entries[o].face;
+      if (!overlap(boxes[f], boxes[g])) continue;
+      const Vec3 low = boxes[f].low.cwiseMax(boxes[g].low);
+      if (key(cell(low, 0), cell(low, 1), cell(low, 2)) == own && penetration(mesh, f, g) > 0) {
+        body(g);
+      }
+    }
+  };
+  context.for_ranges(entries.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t e = begin; e < end; ++e) {
+      for_each_partner(e, [&](Index) { crosses[e] = 1; });
+    }
+  });
+  std::vector<std::array<Index, 2>> result;
+  for (std::size_t e = 0; e < entries.size(); ++e) {
+    if (!crosses[e]) continue;
+    for_each_partner(e, [&](Index g) { result.push_back({entries[e].face, g}); });
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+}  // namespace meshgrain

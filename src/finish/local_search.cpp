@@ -1,0 +1,184 @@
+#include "finish/local_search.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "field/rosy.h"
+#include "finish/crossings.h"
+
+namespace meshgrain {
+namespace {
+
+Vec3 area_vector(std::span<const Index> face, const std::vector<Vec3>& positions) {
+  Vec3 sum = Vec3::Zero();
+  const Vec3& first = positions[face[0]];
+  for (std::size_t k = 2; k < face.size(); ++k) {
+    sum += (positions[face[k - 1]] - first).cross(positions[face[k]] - first);
+  }
+  return 0.5f * sum;
+}
+
+float face_quality(std::span<const Index> face, const std::vector<Vec3>& positions,
+                   const Vec3& upward) {
+  const std::size_t n = face.size();
+  Vec3 normal = area_vector(face, positions);
+  const float length = normal.norm();
+  if (!(length > 0)) return -1;
+  normal /= length;
+  float least = 1;
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vec3& p = positions[face[k]];
+    const Vec3 a = positions[face[(k + 1) % n]] - p, b = positions[face[(k + n - 1) % n]] - p;
+    const float lengths = a.norm() * b.norm();
+    least = std::min(least, lengths > 0 ? normal.dot(a.cross(b)) / lengths : -1.0f);
+  }
+  const float towards = normal.dot(upward);
+  return towards < 0 ? std::min(least, 0.0f) - 1 + towards : least;
+}
+
+}  // namespace
+
+LocalSearch::LocalSearch(Extraction& extraction, const VertexFaces& around, Placement& placement)
+    : mesh_(extraction.mesh),
+      around_(around),
+      placement_(placement),
+      quality_(mesh_.faces.size()),
+      normals_(mesh_.positions.size()),
+      tried_(mesh_.positions.size(), 0),
+      moved_(mesh_.positions.size(), 0) {
+  for (Index f = 0; f < mesh_.faces.size(); ++f) {
+    mean_area_ += area_vector(std::as_const(mesh_.faces)[f], mesh_.positions).norm() /
+                  static_cast<float>(mesh_.faces.size());
+  }
+  for (Index v = 0; v < normals_.size(); ++v) normals_[v] = placement_.normal(v);
+  for (Index f = 0; f < quality_.size(); ++f) quality_[f] = quality_here(f);
+}
+
+void LocalSearch::improve(std::span<const Index> vertices, const Context& context) {
+  constexpr int sweeps = 30;
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    context.check();
+    bool moved = false;
+    for (const Index v : vertices) {
+      if (!has_news(v)) continue;
+      tried_[v] = ++now_;
+      if (!improve(v)) continue;
+      touch(v);
+      moved = true;
+    }
+    if (!moved) return;
+  }
+}
+
+void LocalSearch::keep_apart(std::vector<std::array<Index, 2>> rivals) {
+  rivals_ = std::move(rivals);
+  std::sort(rivals_.begin(), rivals_.end());
+  rivals_.erase(std::unique(rivals_.begin(), rivals_.end()), rivals_.end());
+}
+
+void LocalSearch::put(Index v, const Place& place) {
+  mesh_.positions[v] = place.position;
+  placement_.set_seed(v, place.seed);
+  normals_[v] = placement_.normal(v);
+  for (const Index f : around_[v]) quality_[f] = quality_here(f);
+}
+
+/// Whether something has moved around v since it was last tried.
+bool LocalSearch::has_news(Index v) const {
+  if (tried_[v] == 0) return true;
+  for (const Index f : around_[v]) {
+    for (const Index w : std::as_const(mesh_.faces)[f]) {
+      if (moved_[w] > tried_[v]) return true;
+    }
+  }
+  return false;
+}
+
+float LocalSearch::quality_here(Index f) const {
+  const auto face = std::as_const(mesh_.faces)[f];
+  Vec3 upward = Vec3::Zero();
+  for (const Index v : face) upward += normals_[v];
+  return face_quality(face, mesh_.positions, upward.normalized());
+}
+
+/// What the faces around a vertex lack, the worst counting most, and how uneven they are.
+double LocalSearch::lack(Index v) const {
+  constexpr double good = 0.75;
+  double sum = 0;
+  for (const Index f : around_[v]) {
+    const double q = quality_here(f);
+    const double best = std::sin(2 * std::numbers::pi / static_cast<double>(mesh_.faces.degree(f)));
+    const double irregular = std::max(0.0, best - q), bad = std::max(0.0, good - q);
+    sum += irregular * irregular + 10 * bad * bad;
+    const float area = area_vector(std::as_const(mesh_.faces)[f], mesh_.positions).norm();
+    const double uneven = std::log(std::max(area / mean_area_, 1e-3f));
+    sum += 0.1 * uneven * uneven + crossing(f);
+  }
+  return sum;
+}
+
+double LocalSearch::crossing(Index f) const {
+  double sum = 0;
+  auto it = std::lower_bound(rivals_.begin(), rivals_.end(), std::array<Index, 2>{f, 0});
+  for (; it != rivals_.end() && (*it)[0] == f; ++it) {
+    const double deep = penetration(mesh_, f, (*it)[1]);
+    if (deep > 0) sum += 1 + 20 * deep / std::sqrt(mean_area_);
+  }
+  return sum;
+}
+
+bool LocalSearch::improve(Index v) {
+  if (placement_.is_fixed(v) || around_[v].empty()) return false;
+  const double before = lack(v);
+  if (before < 1e-6) return false;
+  const Vec3 x = any_tangent(normals_[v]), y = normals_[v].cross(x);
+  float length = 0;
+  for (const Index f : around_[v]) {
+    const auto face = std::as_const(mesh_.faces)[f];
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      length += (mesh_.positions[face[k]] - mesh_.positions[face[(k + 1) % face.size()]]).norm() /
+                static_cast<float>(face.size() * around_[v].size());
+    }
+  }
+  Vec3 best = mesh_.positions[v];
+  Placement::Seed best_seed = placement_.seed(v);
+  double least = before;
+  const auto attempt = [&](const Vec3& target) {
+    placement_.set_seed(v, best_seed);
+    mesh_.positions[v] = placement_.place(target, v);
+    const double now = lack(v);
+    if (now < least) {
+      least = now;
+      best = mesh_.positions[v];
+      best_seed = placement_.seed(v);
+    }
+  };
+  Vec3 center = Vec3::Zero();
+  float count = 0;
+  for (const Index f : around_[v]) {
+    for (const Index w : std::as_const(mesh_.faces)[f]) {
+      if (w == v) continue;
+      center += mesh_.positions[w];
+      ++count;
+    }
+  }
+  attempt(center / count);
+  constexpr int directions = 8;
+  for (float step = 0.5f * length; step > 0.03f * length; step /= 2) {
+    const Vec3 from = best;
+    for (int k = 0; k < directions; ++k) {
+      const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(k) / directions;
+      attempt(from + step * (std::cos(angle) * x + std::sin(angle) * y));
+    }
+  }
+  mesh_.positions[v] = best;
+  placement_.set_seed(v, best_seed);
+  if (least > 0.99 * before) return false;
+  put(v, {best, best_seed});
+  return true;
+}
+
+}  // namespace meshgrain

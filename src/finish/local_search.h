@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "finish/placement.h"
+#include "mesh/vertex_faces.h"
+#include "meshgrain/context.h"
+#include "meshgrain/extract.h"
+
+namespace meshgrain {
+
+/// Moves single vertices over the surface to where the faces around them are best, by trying places
+/// (Hooke and Jeeves 1961): for the few faces that a smooth optimisation leaves bad.
+class LocalSearch {
+ public:
+  /// All must outlive this.
+  LocalSearch(Extraction& extraction, const VertexFaces& around, Placement& placement);
+
+  /// What a face is worth: the least sine of its corners (a quad's scaled Jacobian), seen along the
+  /// normal of the face; negative where a corner is turned in, and below -1 if the whole face looks
+  /// away from the surface.
+  float quality(Index f) const { return quality_[f]; }
+
+  /// Tries each of the vertices, again and again while any of them moves.
+  void improve(std::span<const Index> vertices, const Context& context);
+
+  /// Pairs of faces that are also bad if they pass through each other, both ways around.
+  void keep_apart(std::vector<std::array<Index, 2>> rivals);
+
+  /// Where a vertex is.
+  struct Place {
+    Vec3 position;
+    Placement::Seed seed;
+  };
+  Place place(Index v) const { return {mesh_.positions[v], placement_.seed(v)}; }
+  void put(Index v, const Place& place);
+
+  /// To be called when a vertex may go elsewhere than before: it is then tried again.
+  void touch(Index v) { moved_[v] = ++now_; }
+
+ private:
+  bool has_news(Index v) const;
+  bool improve(Index v);
+  float quality_here(Index f) const;
+  double lack(Index v) const;
+  double crossing(Index f) const;
+
+  Mesh& mesh_;
+  const VertexFaces& around_;
+  Placement& placement_;
+  std::vector<float> quality_;  // of each face
+  std::vector<Vec3> normals_;   // of the surface, where each vertex is
+  float mean_area_ = 0;
+  std::vector<std::array<Index, 2>> rivals_;  // in order
+  std::uint32_t now_ = 0;                     // counts tries and moves
+  std::vector<std::uint32_t> tried_, moved_;  // when each vertex last was
+};
+
+}  // namespace meshgrain
