@@ -23,18 +23,24 @@ void for_each_triangle(std::span<const Index> face, const Body& body) {
   body(Corners{face[1], face[3], face[0]});
 }
 
-/// How far the nearer end of a segment lies beyond a triangle that it passes through, else 0.
+/// How far the nearer end of a segment lies beyond a triangle that it passes through, else 0. Both
+/// are taken a little larger than they are, so that what only touches counts too.
 double depth(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
+  constexpr double margin = 1e-3;
   const Eigen::Vector3d origin = a.cast<double>();
-  const auto from_origin = [&](const Vec3& x) { return Eigen::Vector3d(x.cast<double>() - origin); };
-  const Eigen::Vector3d u = from_origin(b), v = from_origin(c), s = from_origin(p),
-                        t = from_origin(q);
+  const auto from_origin = [&](const Vec3& x) -> Eigen::Vector3d {
+    return x.cast<double>() - origin;
+  };
+  const Eigen::Vector3d u = from_origin(b), v = from_origin(c);
+  const Eigen::Vector3d along = (q - p).cast<double>();
+  const Eigen::Vector3d s = from_origin(p) - margin * along, t = from_origin(q) + margin * along;
   const Eigen::Vector3d normal = u.cross(v);
   const double ds = normal.dot(s), dt = normal.dot(t);
   if (!(ds * dt < 0)) return 0;
   const Eigen::Vector3d x = s + ds / (ds - dt) * (t - s);
-  if (normal.dot(u.cross(x)) < 0 || normal.dot((v - u).cross(x - u)) < 0 ||
-      normal.dot(x.cross(v)) < 0) {
+  const double outside = -margin * normal.squaredNorm();
+  if (normal.dot(u.cross(x)) < outside || normal.dot((v - u).cross(x - u)) < outside ||
+      normal.dot(x.cross(v)) < outside) {
     return 0;
   }
   return std::min(std::abs(ds), std::abs(dt)) / normal.norm();

@@ -47,6 +47,7 @@ LocalSearch::LocalSearch(Extraction& extraction, const VertexFaces& around, Plac
       placement_(placement),
       quality_(mesh_.faces.size()),
       normals_(mesh_.positions.size()),
+      is_rival_(mesh_.faces.size(), 0),
       tried_(mesh_.positions.size(), 0),
       moved_(mesh_.positions.size(), 0) {
   for (Index f = 0; f < mesh_.faces.size(); ++f) {
@@ -73,10 +74,10 @@ void LocalSearch::improve(std::span<const Index> vertices, const Context& contex
   }
 }
 
-void LocalSearch::keep_apart(std::vector<std::array<Index, 2>> rivals) {
-  rivals_ = std::move(rivals);
-  std::sort(rivals_.begin(), rivals_.end());
-  rivals_.erase(std::unique(rivals_.begin(), rivals_.end()), rivals_.end());
+void LocalSearch::keep_apart(std::vector<Index> faces) {
+  for (const Index f : rivals_) is_rival_[f] = 0;
+  rivals_ = std::move(faces);
+  for (const Index f : rivals_) is_rival_[f] = 1;
 }
 
 void LocalSearch::put(Index v, const Place& place) {
@@ -121,10 +122,10 @@ double LocalSearch::lack(Index v) const {
 }
 
 double LocalSearch::crossing(Index f) const {
+  if (!is_rival_[f]) return 0;
   double sum = 0;
-  auto it = std::lower_bound(rivals_.begin(), rivals_.end(), std::array<Index, 2>{f, 0});
-  for (; it != rivals_.end() && (*it)[0] == f; ++it) {
-    const double deep = penetration(mesh_, f, (*it)[1]);
+  for (const Index g : rivals_) {
+    const double deep = penetration(mesh_, f, g);
     if (deep > 0) sum += 1 + 20 * deep / std::sqrt(mean_area_);
   }
   return sum;

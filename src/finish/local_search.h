@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -27,8 +26,8 @@ class LocalSearch {
   /// Tries each of the vertices, again and again while any of them moves.
   void improve(std::span<const Index> vertices, const Context& context);
 
-  /// Pairs of faces that are also bad if they pass through each other, both ways around.
-  void keep_apart(std::vector<std::array<Index, 2>> rivals);
+  /// Faces that, from now on, are also bad where they pass through each other.
+  void keep_apart(std::vector<Index> faces);
 
   /// Where a vertex is.
   struct Place {
@@ -38,7 +37,7 @@ class LocalSearch {
   Place place(Index v) const { return {mesh_.positions[v], placement_.seed(v)}; }
   void put(Index v, const Place& place);
 
-  /// To be called when a vertex may go elsewhere than before: it is then tried again.
+  /// To be called when a vertex, or what is asked of it, has changed: it is then tried again.
   void touch(Index v) { moved_[v] = ++now_; }
 
  private:
@@ -54,7 +53,8 @@ class LocalSearch {
   std::vector<float> quality_;  // of each face
   std::vector<Vec3> normals_;   // of the surface, where each vertex is
   float mean_area_ = 0;
-  std::vector<std::array<Index, 2>> rivals_;  // in order
+  std::vector<Index> rivals_;                 // see keep_apart()
+  std::vector<std::uint8_t> is_rival_;        // of each face
   std::uint32_t now_ = 0;                     // counts tries and moves
   std::vector<std::uint32_t> tried_, moved_;  // when each vertex last was
 };

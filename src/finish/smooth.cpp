@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "finish/bare_ends.h"
+#include "finish/local_search.h"
+#include "finish/part_crossings.h"
 #include "finish/placement.h"
 #include "finish/untangle.h"
 #include "mesh/vertex_faces.h"
@@ -95,8 +97,8 @@ class Smoother {
   /// Pulls the mesh out to the ends of fingers and horns, and holds it there.
   void hold_ends();
 
-  /// Mends single faces that are turned over or nearly degenerate.
-  void untangle();
+  /// Mends single faces that are turned over, nearly degenerate, or pass through others.
+  void mend();
 
  private:
   template <typename Body>
@@ -221,8 +223,10 @@ void Smoother::hold_ends() {
   }
 }
 
-void Smoother::untangle() {
-  meshgrain::untangle(extraction_, around_, placement_, context_);
+void Smoother::mend() {
+  LocalSearch search(extraction_, around_, placement_);
+  untangle(mesh_, around_, placement_, search, context_);
+  part_crossings(mesh_, around_, search, context_);
 }
 
 }  // namespace
@@ -237,7 +241,7 @@ void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
     if (part > 0) smoother.hold_ends();
     smoother.iterate(options.iterations * (part + 1) / parts - options.iterations * part / parts);
   }
-  smoother.untangle();
+  smoother.mend();
 }
 
 }  // namespace meshgrain
