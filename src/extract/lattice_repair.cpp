@@ -62,9 +62,9 @@ class LatticeRepair {
   /// The same for an edge between two triangles.
   bool is_news(Looked& looked, Index h) {
     const Index t = PolygonMap::twin(h);
-    return is_news(looked, h / 2,
-                   {map_.origin(h), map_.origin(t), map_.origin(map_.prev(h)),
-                    map_.origin(map_.prev(t))});
+    return is_news(
+        looked, h / 2,
+        {map_.origin(h), map_.origin(t), map_.origin(map_.prev(h)), map_.origin(map_.prev(t))});
   }
   void touch(std::initializer_list<Index> vertices) {
     ++now_;
@@ -231,8 +231,7 @@ class LatticeRepair {
                           lattice_.metric().squared_length(back.t);
       if (gain < least_gain || !keeps_angles(before, after)) continue;
       lattice_.set_jump(t, back);
-      touch({map_.origin(h), map_.origin(t), map_.origin(map_.prev(h)),
-             map_.origin(map_.prev(t))});
+      touch({map_.origin(h), map_.origin(t), map_.origin(map_.prev(h)), map_.origin(map_.prev(t))});
       any = true;
     }
     return any;

@@ -59,9 +59,8 @@ float distance_to_star(const Vec3& p, const Mesh& mesh, const VertexFaces& aroun
       for (const Index g : around[v]) {
         const auto face = mesh.faces[g];
         for (std::size_t k = 2; k < face.size(); ++k) {
-          const Vec3 q = closest_point_on_triangle(p, mesh.positions[face[0]],
-                                                   mesh.positions[face[k - 1]],
-                                                   mesh.positions[face[k]]);
+          const Vec3 q = closest_point_on_triangle(
+              p, mesh.positions[face[0]], mesh.positions[face[k - 1]], mesh.positions[face[k]]);
           least = std::min(least, (p - q).squaredNorm());
         }
       }
@@ -110,10 +109,9 @@ std::vector<Reach> find_bare_ends(const Extraction& extraction, const VertexFace
     }
     const float inner = distance(node) - reach, over = reach - distance(outer);
     const float share = inner > 0 ? inner / (inner + over) : 0.0f;
-    result.push_back({ways.vertex[tip.node], share < 0.5f ? node : outer,
-                      graph.positions[node] +
-                          share * (graph.positions[outer] - graph.positions[node]),
-                      end});
+    result.push_back(
+        {ways.vertex[tip.node], share < 0.5f ? node : outer,
+         graph.positions[node] + share * (graph.positions[outer] - graph.positions[node]), end});
   }
   return result;
 }

@@ -93,9 +93,8 @@ double penetration(const Mesh& mesh, Index f, Index g) {
   if (f == g || !overlap(box_of(mesh, f), box_of(mesh, g))) return 0;
   double sum = 0;
   for_each_triangle(mesh.faces[f], [&](const Corners& t) {
-    for_each_triangle(mesh.faces[g], [&](const Corners& u) {
-      sum += triangle_penetration(mesh.positions, t, u);
-    });
+    for_each_triangle(mesh.faces[g],
+                      [&](const Corners& u) { sum += triangle_penetration(mesh.positions, t, u); });
   });
   return sum;
 }

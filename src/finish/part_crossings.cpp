@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "finish/crossings.h"
@@ -18,8 +19,9 @@ void sort_unique(std::vector<Index>& list) {
 
 class Parting {
  public:
-  Parting(const Mesh& mesh, const VertexFaces& around, LocalSearch& search, const Context& context)
-      : mesh_(mesh), around_(around), search_(search), context_(context) {}
+  Parting(const Mesh& mesh, const VertexFaces& around, const Placement& placement,
+          LocalSearch& search, const Context& context)
+      : mesh_(mesh), around_(around), placement_(placement), search_(search), context_(context) {}
 
   void run() {
     const auto crossings = find_crossings(mesh_, context_);
@@ -27,11 +29,14 @@ class Parting {
     std::vector<Place> places = find_places(crossings);
     for (Place& place : places) {
       context_.check();
-      slide(place);
-      if (is_mended(place)) continue;
+      const bool inherent = surface_crosses(place);
+      if (inherent && place.faces.size() > largest_inherent) continue;
+      if (slide(place)) continue;
       restore(place);
-      loosen(place);
-      if (!is_mended(place)) restore(place);
+      if (!inherent && (loosen(place, false) || slide(place))) continue;
+      restore(place);
+      if (!inherent && (slide(place) || loosen(place, true))) continue;
+      restore(place);
     }
     search_.keep_apart({});
     // What has moved may have come upon something else.
@@ -56,8 +61,8 @@ class Parting {
     float worst = 1;  // quality of the faces
   };
 
-  // Faces cross in a larger place because the surface itself does.
-  static constexpr std::size_t largest_place = 250;
+  // Larger places, in faces, are left alone; where the surface itself crosses even sooner.
+  static constexpr std::size_t largest_place = 500, largest_inherent = 100;
 
   std::vector<Place> find_places(const std::vector<std::array<Index, 2>>& crossings) {
     UnionFind sets(mesh_.faces.size());
@@ -93,12 +98,37 @@ class Parting {
           }
         }
       }
+      if (place.vertices.empty()) continue;
       sort_unique(place.vertices);
       for (const Index v : place.vertices) place.before.push_back(search_.place(v));
       place.worst = worst(place);
       places.push_back(std::move(place));
     }
     return places;
+  }
+
+  float mean_edge(const Place& place) const {
+    float sum = 0, count = 0;
+    for (const Index f : place.faces) {
+      const auto face = mesh_.faces[f];
+      for (std::size_t k = 0; k < face.size(); ++k) {
+        sum += (mesh_.positions[face[k]] - mesh_.positions[face[(k + 1) % face.size()]]).norm();
+        ++count;
+      }
+    }
+    return sum / count;
+  }
+
+  bool surface_crosses(const Place& place) const {
+    std::vector<Index> nodes;
+    Vec3 low = place.before[0].position, high = low;
+    for (const LocalSearch::Place& at : place.before) {
+      nodes.push_back(at.seed.on_line != no_index ? at.seed.on_line : at.seed.node);
+      low = low.cwiseMin(at.position);
+      high = high.cwiseMax(at.position);
+    }
+    const Mesh piece = placement_.projector().cut_out(low, high, std::move(nodes));
+    return !find_crossings(piece, context_).empty();
   }
 
   float worst(const Place& place) const {
@@ -127,19 +157,24 @@ class Parting {
     }
   }
 
-  /// Over the surface.
-  void slide(const Place& place) {
+  /// Over the surface. Returns whether the place is mended.
+  bool slide(const Place& place) {
     search_.keep_apart(place.faces);
     for (const Index v : place.vertices) search_.touch(v);
     search_.improve(place.vertices, context_);
+    return is_mended(place);
   }
 
-  /// Off the surface: each vertex towards its neighbours, until nothing crosses.
-  void loosen(const Place& place) {
+  /// Off the surface, but not far: each vertex towards its neighbours, until nothing crosses.
+  /// Returns whether that came to be. Vertices that hold an end out move only if `with_ends`.
+  bool loosen(const Place& place, bool with_ends) {
     constexpr int steps = 12;
+    const float farthest = 1.0f * mean_edge(place);
     for (int step = 0; step < steps && !is_mended(place); ++step) {
       std::vector<Vec3> next;
-      for (const Index v : place.vertices) {
+      for (std::size_t k = 0; k < place.vertices.size(); ++k) {
+        const Index v = place.vertices[k];
+        const Vec3& start = place.before[k].position;
         Vec3 sum = Vec3::Zero();
         float count = 0;
         for (const Index f : around_[v]) {
@@ -149,25 +184,29 @@ class Parting {
             ++count;
           }
         }
-        next.push_back(0.5f * (mesh_.positions[v] + sum / count));
+        const Vec3 moved = 0.5f * (mesh_.positions[v] + sum / count) - start;
+        next.push_back(start + moved * std::min(1.0f, farthest / std::max(moved.norm(), 1e-30f)));
       }
       for (std::size_t k = 0; k < place.vertices.size(); ++k) {
+        if (!with_ends && placement_.is_tethered(place.vertices[k])) continue;
         search_.put(place.vertices[k], {next[k], place.before[k].seed});
       }
     }
+    return is_mended(place);
   }
 
   const Mesh& mesh_;
   const VertexFaces& around_;
+  const Placement& placement_;
   LocalSearch& search_;
   const Context& context_;
 };
 
 }  // namespace
 
-void part_crossings(const Mesh& mesh, const VertexFaces& around, LocalSearch& search,
-                    const Context& context) {
-  Parting(mesh, around, search, context).run();
+void part_crossings(const Mesh& mesh, const VertexFaces& around, const Placement& placement,
+                    LocalSearch& search, const Context& context) {
+  Parting(mesh, around, placement, search, context).run();
 }
 
 }  // namespace meshgrain

@@ -20,7 +20,7 @@ Vec3 Placement::place(const Vec3& p, std::size_t v) {
   }
   if (on_line != no_index) return lines_.project(p, on_line);
   const Vec3 q = projector_.project(p, extraction_.nodes[v]);
-  if (tether_[v] == no_index) return q;
+  if (!is_tethered(v)) return q;
   const auto& [end, radius] = tethers_[tether_[v]];
   const float distance = (q - end).norm();
   if (distance <= radius) return q;

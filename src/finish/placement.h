@@ -19,9 +19,10 @@ class Placement {
   Vec3 place(const Vec3& p, std::size_t v);
 
   bool is_fixed(std::size_t v) const { return rails_.fixed[v]; }
+  bool is_tethered(std::size_t v) const { return tether_[v] != no_index; }
   /// Whether it may go anywhere on the surface.
   bool is_free(std::size_t v) const {
-    return !is_fixed(v) && rails_.seed[v] == no_index && tether_[v] == no_index;
+    return !is_fixed(v) && rails_.seed[v] == no_index && !is_tethered(v);
   }
 
   /// Moves v to a point of the surface, near a node of it; from then on it stays within `radius` of
@@ -33,6 +34,8 @@ class Placement {
 
   /// The normal of the surface where vertex v is.
   Vec3 normal(std::size_t v) const { return projector_.normal(extraction_.nodes[v]); }
+
+  const Projector& projector() const { return projector_; }
 
   /// What place() remembers of a vertex, to go back to.
   struct Seed {

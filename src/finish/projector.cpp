@@ -1,7 +1,11 @@
 #include "finish/projector.h"
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
 
 #include "util/triangle.h"
 
@@ -45,6 +49,36 @@ Vec3 Projector::normal(Index vertex) const {
   }
   const float length = sum.norm();
   return length > 0 ? Vec3(sum / length) : Vec3(Vec3::Zero());
+}
+
+Mesh Projector::cut_out(const Vec3& low, const Vec3& high, std::vector<Index> from) const {
+  Mesh piece;
+  if (surface_.is_point_cloud()) return piece;
+  std::unordered_set<Index> seen(from.begin(), from.end()), faces;
+  while (!from.empty()) {
+    const Index v = from.back();
+    from.pop_back();
+    for (const Index f : around_[v]) {
+      faces.insert(f);
+      for (const Index w : surface_.faces[f]) {
+        const Vec3& p = surface_.positions[w];
+        const bool inside = (p.array() >= low.array()).all() && (p.array() <= high.array()).all();
+        if (inside && seen.insert(w).second) from.push_back(w);
+      }
+    }
+  }
+  std::unordered_map<Index, Index> number;
+  for (const Index f : faces) {
+    std::array<Index, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index v = surface_.faces[f][k];
+      const auto [it, is_new] = number.try_emplace(v, static_cast<Index>(number.size()));
+      if (is_new) piece.positions.push_back(surface_.positions[v]);
+      corners[k] = it->second;
+    }
+    piece.faces.push_back(corners);
+  }
+  return piece;
 }
 
 Vec3 Projector::project(const Vec3& p, Index& seed) const {

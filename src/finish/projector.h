@@ -22,6 +22,10 @@ class Projector {
   /// The normal of the surface at a vertex.
   Vec3 normal(Index vertex) const;
 
+  /// The faces in and across a box that hang together there with one of the vertices `from`; none
+  /// of a point cloud.
+  Mesh cut_out(const Vec3& low, const Vec3& high, std::vector<Index> from) const;
+
  private:
   Vec3 nearest_around(const Vec3& p, Index vertex, Index& nearest_corner) const;
   Vec3 project_on_cloud(const Vec3& p, Index& seed) const;

@@ -226,7 +226,7 @@ void Smoother::hold_ends() {
 void Smoother::mend() {
   LocalSearch search(extraction_, around_, placement_);
   untangle(mesh_, around_, placement_, search, context_);
-  part_crossings(mesh_, around_, search, context_);
+  part_crossings(mesh_, around_, placement_, search, context_);
 }
 
 }  // namespace

@@ -9,8 +9,8 @@ namespace {
 
 class Untangling {
  public:
-  Untangling(const Mesh& mesh, const VertexFaces& around, Placement& placement,
-             LocalSearch& search, const Context& context)
+  Untangling(const Mesh& mesh, const VertexFaces& around, Placement& placement, LocalSearch& search,
+             const Context& context)
       : faces_(mesh.faces),
         around_(around),
         placement_(placement),
