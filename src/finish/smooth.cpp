@@ -8,7 +8,7 @@
 
 #include "finish/bare_ends.h"
 #include "finish/local_search.h"
-#include "finish/part_crossings.h"
+#include "finish/mend_places.h"
 #include "finish/placement.h"
 #include "finish/untangle.h"
 #include "mesh/vertex_faces.h"
@@ -226,7 +226,7 @@ void Smoother::hold_ends() {
 void Smoother::mend() {
   LocalSearch search(extraction_, around_, placement_);
   untangle(mesh_, around_, placement_, search, context_);
-  part_crossings(mesh_, around_, placement_, search, context_);
+  mend_places(mesh_, around_, placement_, search, context_);
 }
 
 }  // namespace

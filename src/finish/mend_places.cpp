@@ -1,4 +1,4 @@
-#include "finish/part_crossings.h"
+#include "finish/mend_places.h"
 
 #include <algorithm>
 #include <array>
@@ -17,43 +17,31 @@ void sort_unique(std::vector<Index>& list) {
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
-class Parting {
+class Mending {
  public:
-  Parting(const Mesh& mesh, const VertexFaces& around, const Placement& placement,
+  Mending(const Mesh& mesh, const VertexFaces& around, const Placement& placement,
           LocalSearch& search, const Context& context)
       : mesh_(mesh), around_(around), placement_(placement), search_(search), context_(context) {}
 
+  /// With as many rings of faces around the bad ones as it takes.
   void run() {
-    const auto crossings = find_crossings(mesh_, context_);
-    if (crossings.empty()) return;
-    std::vector<Place> places = find_places(crossings);
-    for (Place& place : places) {
-      context_.check();
-      const bool inherent = surface_crosses(place);
-      if (inherent && place.faces.size() > largest_inherent) continue;
-      if (slide(place)) continue;
-      restore(place);
-      if (!inherent && (loosen(place, false) || slide(place))) continue;
-      restore(place);
-      if (!inherent && (slide(place) || loosen(place, true))) continue;
-      restore(place);
-    }
-    search_.keep_apart({});
-    // What has moved may have come upon something else.
-    const auto left = find_crossings(mesh_, context_);
-    for (const Place& place : places) {
-      const auto holds = [&](Index f) {
-        return std::binary_search(place.faces.begin(), place.faces.end(), f);
-      };
-      const bool crosses =
-          std::any_of(left.begin(), left.end(), [&](const auto& c) { return holds(c[0]); }) ||
-          std::any_of(left.begin(), left.end(), [&](const auto& c) { return holds(c[1]); });
-      if (crosses) restore(place);
+    for (const int rings : {2, 4}) {
+      const Pairs bad = find_bad();
+      if (bad.empty()) return;
+      const std::vector<Place> places = find_places(bad, rings);
+      for (const Place& place : places) {
+        context_.check();
+        if (!mend(place)) restore(place);
+      }
+      search_.keep_apart({});
+      restore_crossing(places);
     }
   }
 
  private:
-  /// Faces that cross, with two rings of others, and how they were. Places have no face in common.
+  using Pairs = std::vector<std::array<Index, 2>>;
+
+  /// Bad faces, with some rings of others, and how they were. Places have no face in common.
   struct Place {
     std::vector<Index> faces;     // in order
     std::vector<Index> vertices;  // those with all of their faces in it
@@ -64,12 +52,20 @@ class Parting {
   // Larger places, in faces, are left alone; where the surface itself crosses even sooner.
   static constexpr std::size_t largest_place = 500, largest_inherent = 100;
 
-  std::vector<Place> find_places(const std::vector<std::array<Index, 2>>& crossings) {
+  /// Pairs of faces that pass through each other; those that are turned over with themselves.
+  Pairs find_bad() const {
+    Pairs bad = find_crossings(mesh_, context_);
+    for (Index f = 0; f < mesh_.faces.size(); ++f) {
+      if (search_.quality(f) <= 0) bad.push_back({f, f});
+    }
+    return bad;
+  }
+
+  std::vector<Place> find_places(const Pairs& bad, int rings) const {
     UnionFind sets(mesh_.faces.size());
     std::vector<Index> involved;
-    for (const auto& [f, g] : crossings) {
+    for (const auto& [f, g] : bad) {
       std::vector<Index> faces{f, g};
-      constexpr int rings = 2;
       for (int ring = 0; ring < rings; ++ring) {
         std::vector<Index> wider;
         for (const Index face : faces) {
@@ -147,8 +143,35 @@ class Parting {
   }
 
   bool is_mended(const Place& place) const {
-    constexpr float acceptable = 0.15f;
-    return worst(place) >= std::min(place.worst, acceptable) && !crosses(place);
+    constexpr float acceptable = 0.1f, least = 0.01f;
+    return worst(place) >= std::clamp(place.worst, least, acceptable) && !crosses(place);
+  }
+
+  bool mend(const Place& place) {
+    const bool inherent = surface_crosses(place);
+    if (inherent && place.faces.size() > largest_inherent) return false;
+    if (slide(place)) return true;
+    if (inherent) return false;
+    restore(place);
+    if (loosen(place, false) || slide(place)) return true;
+    restore(place);
+    return slide(place) || loosen(place, true);
+  }
+
+  /// Takes back what has come upon something beyond its place.
+  void restore_crossing(const std::vector<Place>& places) {
+    std::vector<Index> crossing;
+    for (const auto& [f, g] : find_crossings(mesh_, context_)) {
+      crossing.push_back(f);
+      crossing.push_back(g);
+    }
+    for (const Place& place : places) {
+      if (std::any_of(crossing.begin(), crossing.end(), [&](Index f) {
+            return std::binary_search(place.faces.begin(), place.faces.end(), f);
+          })) {
+        restore(place);
+      }
+    }
   }
 
   void restore(const Place& place) {
@@ -204,9 +227,9 @@ class Parting {
 
 }  // namespace
 
-void part_crossings(const Mesh& mesh, const VertexFaces& around, const Placement& placement,
-                    LocalSearch& search, const Context& context) {
-  Parting(mesh, around, placement, search, context).run();
+void mend_places(const Mesh& mesh, const VertexFaces& around, const Placement& placement,
+                 LocalSearch& search, const Context& context) {
+  Mending(mesh, around, placement, search, context).run();
 }
 
 }  // namespace meshgrain
