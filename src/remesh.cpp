@@ -215,10 +215,10 @@ class Pipeline {
       // The more regular, the more the grid must stretch. Triangles of one size are regular; the
       // triangles among quads are smaller than these.
       if (options_.faces == OutputFaces::quads) {
-        smoothing.evenness = 0.58 + 0.12 * options_.regularity;
+        smoothing.evenness = 0.59 + 0.12 * options_.regularity;
       }
       if (options_.faces == OutputFaces::triangles) smoothing.evenness = 0.75;
-      if (options_.faces == OutputFaces::quad_dominant) smoothing.evenness = 0.5;
+      if (options_.faces == OutputFaces::quad_dominant) smoothing.evenness = 0.46;
       const EdgeLength& lengths = fields().position.edge_length;
       if (!lengths.uniform() && nodes_are_vertices_) {
         std::vector<float> sizes;

@@ -21,7 +21,7 @@ void take_dual(Extraction& extraction);
 std::size_t make_manifold(Extraction& extraction);
 
 struct SmoothOptions {
-  int iterations = 60;
+  int iterations = 72;
   /// How strongly faces are drawn to one size, 0 to 1: areas become more even, angles a little
   /// less.
   double evenness = 0.65;

@@ -41,7 +41,7 @@ struct RemeshOptions {
   /// field has singularities.
   double regularity = 0.5;
   CurvatureAlignment curvature;
-  int smoothing = 60;     ///< Iterations of smooth() (0: only put onto the surface).
+  int smoothing = 72;     ///< Iterations of smooth() (0: only put onto the surface).
   bool manifold = false;  ///< Drop what is not manifold.
 
   /// Use these instead of solving for an orientation field (and a position field, if that has

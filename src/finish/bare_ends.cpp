@@ -102,16 +102,18 @@ std::vector<Reach> find_bare_ends(const Extraction& extraction, const VertexFace
       continue;
     }
     taken.push_back(end);
-    Index node = tip.node, outer = tip.node;
+    // Back from the tip until it is far enough.
     const auto distance = [&](Index i) { return (graph.positions[i] - end).norm(); };
+    Index node = tip.node, outer = tip.node;
     while (distance(node) < reach && ways.before[node] != no_index) {
       outer = std::exchange(node, ways.before[node]);
     }
-    const float inner = distance(node) - reach, over = reach - distance(outer);
-    const float share = inner > 0 ? inner / (inner + over) : 0.0f;
-    result.push_back(
-        {ways.vertex[tip.node], share < 0.5f ? node : outer,
-         graph.positions[node] + share * (graph.positions[outer] - graph.positions[node]), end});
+    const float under = distance(node) - reach, over = reach - distance(outer);
+    const float share = under > 0 ? under / (under + over) : 0.0f;
+    result.push_back({ways.vertex[tip.node], share < 0.5f ? node : outer,
+                      graph.positions[node] +
+                          share * (graph.positions[outer] - graph.positions[node]),
+                      end});
   }
   return result;
 }

@@ -58,8 +58,8 @@ LocalSearch::LocalSearch(Extraction& extraction, const VertexFaces& around, Plac
   for (Index f = 0; f < quality_.size(); ++f) quality_[f] = quality_here(f);
 }
 
-void LocalSearch::improve(std::span<const Index> vertices, const Context& context) {
-  constexpr int sweeps = 30;
+bool LocalSearch::improve(std::span<const Index> vertices, int sweeps, const Context& context) {
+  bool any = false;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     context.check();
     bool moved = false;
@@ -70,8 +70,10 @@ void LocalSearch::improve(std::span<const Index> vertices, const Context& contex
       touch(v);
       moved = true;
     }
-    if (!moved) return;
+    if (!moved) break;
+    any = true;
   }
+  return any;
 }
 
 void LocalSearch::keep_apart(std::vector<Index> faces) {

@@ -23,8 +23,8 @@ class LocalSearch {
   /// away from the surface.
   float quality(Index f) const { return quality_[f]; }
 
-  /// Tries each of the vertices, again and again while any of them moves.
-  void improve(std::span<const Index> vertices, const Context& context);
+  /// Tries each of the vertices, and again while any of them moves. Returns whether one did.
+  bool improve(std::span<const Index> vertices, int sweeps, const Context& context);
 
   /// Faces that, from now on, are also bad where they pass through each other.
   void keep_apart(std::vector<Index> faces);

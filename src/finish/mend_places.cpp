@@ -184,7 +184,8 @@ class Mending {
   bool slide(const Place& place) {
     search_.keep_apart(place.faces);
     for (const Index v : place.vertices) search_.touch(v);
-    search_.improve(place.vertices, context_);
+    constexpr int sweeps = 30;
+    search_.improve(place.vertices, sweeps, context_);
     return is_mended(place);
   }
 

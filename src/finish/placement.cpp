@@ -1,5 +1,6 @@
 #include "finish/placement.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace meshgrain {
@@ -30,8 +31,11 @@ Vec3 Placement::place(const Vec3& p, std::size_t v) {
 void Placement::tether(std::size_t v, const Vec3& p, Index node, const Vec3& end, float radius) {
   extraction_.mesh.positions[v] = p;
   extraction_.nodes[v] = node;
-  tether_[v] = static_cast<Index>(tethers_.size());
-  tethers_.push_back({end, radius});
+  if (!is_tethered(v)) {
+    tether_[v] = static_cast<Index>(tethers_.size());
+    tethers_.emplace_back();
+  }
+  tethers_[tether_[v]] = {end, std::max(radius, (p - end).norm())};
 }
 
 bool Placement::release(std::size_t v) {

@@ -26,7 +26,7 @@ class Placement {
   }
 
   /// Moves v to a point of the surface, near a node of it; from then on it stays within `radius` of
-  /// `end`.
+  /// `end`, or as near as it then is.
   void tether(std::size_t v, const Vec3& p, Index node, const Vec3& end, float radius);
 
   /// Lets v leave the line that holds it. Returns whether there was one.

@@ -217,7 +217,7 @@ void Smoother::hold_ends() {
   if (!nodes_are_vertices_) return;
   const float reach = 0.9f * mean_side(mesh_, options_.relative_size);
   for (const Reach& end : find_bare_ends(extraction_, around_, graph_, reach, context_)) {
-    if (!placement_.is_free(end.vertex)) continue;
+    if (!placement_.is_free(end.vertex) && !placement_.is_tethered(end.vertex)) continue;
     placement_.tether(end.vertex, end.position, end.node, end.tip, reach);
     previous_[end.vertex] = end.position;
   }

@@ -27,9 +27,8 @@ class Untangling {
   static constexpr float acceptable = 0.15f;  // below which its vertices leave their features
 
   void improve_bad_faces() {
-    constexpr int rounds = 10;
-    std::vector<Index> before;
-    for (int round = 0; round < rounds; ++round) {
+    constexpr int sweeps = 30;
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
       std::vector<Index> vertices;
       for (Index f = 0; f < faces_.size(); ++f) {
         if (search_.quality(f) >= wanted) continue;
@@ -41,9 +40,7 @@ class Untangling {
       }
       std::sort(vertices.begin(), vertices.end());
       vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-      if (vertices == before) return;
-      search_.improve(vertices, context_);
-      before = std::move(vertices);
+      if (!search_.improve(vertices, 1, context_)) return;
     }
   }
 
