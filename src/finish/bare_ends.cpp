@@ -110,10 +110,9 @@ std::vector<Reach> find_bare_ends(const Extraction& extraction, const VertexFace
     }
     const float under = distance(node) - reach, over = reach - distance(outer);
     const float share = under > 0 ? under / (under + over) : 0.0f;
-    result.push_back({ways.vertex[tip.node], share < 0.5f ? node : outer,
-                      graph.positions[node] +
-                          share * (graph.positions[outer] - graph.positions[node]),
-                      end});
+    result.push_back(
+        {ways.vertex[tip.node], share < 0.5f ? node : outer,
+         graph.positions[node] + share * (graph.positions[outer] - graph.positions[node]), end});
   }
   return result;
 }

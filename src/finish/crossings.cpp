@@ -23,18 +23,29 @@ void for_each_triangle(std::span<const Index> face, const Body& body) {
   body(Corners{face[1], face[3], face[0]});
 }
 
-/// How far the nearer end of a segment lies beyond a triangle that it passes through, else 0. Both
-/// are taken a little larger than they are, so that what only touches counts too.
-double depth(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
-  constexpr double margin = 1e-3;
-  const Eigen::Vector3d origin = a.cast<double>();
-  const auto from_origin = [&](const Vec3& x) -> Eigen::Vector3d {
-    return x.cast<double>() - origin;
-  };
-  const Eigen::Vector3d u = from_origin(b), v = from_origin(c);
-  const Eigen::Vector3d along = (q - p).cast<double>();
-  const Eigen::Vector3d s = from_origin(p) - margin * along, t = from_origin(q) + margin * along;
-  const Eigen::Vector3d normal = u.cross(v);
+// Faces are taken a little larger than they are, so that what only touches counts too.
+constexpr double margin = 1e-3;
+
+using Points = std::array<Eigen::Vector3d, 3>;
+
+/// Whether a triangle lies on one side of the plane through the first point of `plane`.
+bool beside(const Points& triangle, const Points& plane, const Eigen::Vector3d& normal) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Eigen::Vector3d& p : triangle) {
+    const double height = normal.dot(p - plane[0]);
+    low = std::min(low, height);
+    high = std::max(high, height);
+  }
+  const double more = margin * (high - low);
+  return low - more > 0 || high + more < 0;
+}
+
+/// How far the nearer end of a segment lies beyond a triangle that it passes through, else 0.
+double depth(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Points& triangle,
+             const Eigen::Vector3d& normal) {
+  const Eigen::Vector3d u = triangle[1] - triangle[0], v = triangle[2] - triangle[0];
+  const Eigen::Vector3d more = margin * (q - p);
+  const Eigen::Vector3d s = p - more - triangle[0], t = q + more - triangle[0];
   const double ds = normal.dot(s), dt = normal.dot(t);
   if (!(ds * dt < 0)) return 0;
   const Eigen::Vector3d x = s + ds / (ds - dt) * (t - s);
@@ -58,14 +69,22 @@ double triangle_penetration(const std::vector<Vec3>& positions, const Corners& t
     }
   }
   if (shared > 1) return 0;
-  const auto edge_through = [&](const Corners& from, int k, const Corners& to) {
-    return depth(positions[from[k]], positions[from[(k + 1) % 3]], positions[to[0]],
-                 positions[to[1]], positions[to[2]]);
+  Points a, b;
+  for (int k = 0; k < 3; ++k) {
+    a[k] = positions[t[k]].cast<double>();
+    b[k] = positions[u[k]].cast<double>();
+  }
+  const auto normal_of = [](const Points& p) -> Eigen::Vector3d {
+    return (p[1] - p[0]).cross(p[2] - p[0]);
   };
+  const Eigen::Vector3d normal_a = normal_of(a), normal_b = normal_of(b);
+  const auto edge_of_a = [&](int k) { return depth(a[k], a[(k + 1) % 3], b, normal_b); };
+  const auto edge_of_b = [&](int k) { return depth(b[k], b[(k + 1) % 3], a, normal_a); };
   // At a shared corner only the edges opposite of it can pass through.
-  if (shared == 1) return edge_through(t, (own + 1) % 3, u) + edge_through(u, (other + 1) % 3, t);
+  if (shared == 1) return edge_of_a((own + 1) % 3) + edge_of_b((other + 1) % 3);
+  if (beside(b, a, normal_a) || beside(a, b, normal_b)) return 0;
   double sum = 0;
-  for (int k = 0; k < 3; ++k) sum += edge_through(t, k, u) + edge_through(u, k, t);
+  for (int k = 0; k < 3; ++k) sum += edge_of_a(k) + edge_of_b(k);
   return sum;
 }
 

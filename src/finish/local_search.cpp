@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -107,8 +108,9 @@ float LocalSearch::quality_here(Index f) const {
   return face_quality(face, mesh_.positions, upward.normalized());
 }
 
-/// What the faces around a vertex lack, the worst counting most, and how uneven they are.
-double LocalSearch::lack(Index v) const {
+/// What the faces around a vertex lack, the worst counting most, and how uneven they are. From
+/// `limit` on it need not be exact.
+double LocalSearch::lack(Index v, double limit) const {
   constexpr double good = 0.75;
   double sum = 0;
   for (const Index f : around_[v]) {
@@ -118,7 +120,10 @@ double LocalSearch::lack(Index v) const {
     sum += irregular * irregular + 10 * bad * bad;
     const float area = area_vector(std::as_const(mesh_.faces)[f], mesh_.positions).norm();
     const double uneven = std::log(std::max(area / mean_area_, 1e-3f));
-    sum += 0.1 * uneven * uneven + crossing(f);
+    sum += 0.1 * uneven * uneven;
+  }
+  for (const Index f : around_[v]) {
+    if (sum < limit) sum += crossing(f);
   }
   return sum;
 }
@@ -126,17 +131,30 @@ double LocalSearch::lack(Index v) const {
 double LocalSearch::crossing(Index f) const {
   if (!is_rival_[f]) return 0;
   double sum = 0;
-  for (const Index g : rivals_) {
+  for (const Index g : near_) {
     const double deep = penetration(mesh_, f, g);
     if (deep > 0) sum += 1 + 20 * deep / std::sqrt(mean_area_);
   }
   return sum;
 }
 
+void LocalSearch::find_near(Index v, float distance) {
+  near_.clear();
+  if (rivals_.empty()) return;
+  Eigen::AlignedBox3f box;
+  for (const Index f : around_[v]) {
+    for (const Index w : std::as_const(mesh_.faces)[f]) box.extend(mesh_.positions[w]);
+  }
+  const Eigen::AlignedBox3f wide(box.min().array() - distance, box.max().array() + distance);
+  for (const Index g : rivals_) {
+    Eigen::AlignedBox3f other;
+    for (const Index w : std::as_const(mesh_.faces)[g]) other.extend(mesh_.positions[w]);
+    if (wide.intersects(other)) near_.push_back(g);
+  }
+}
+
 bool LocalSearch::improve(Index v) {
   if (placement_.is_fixed(v) || around_[v].empty()) return false;
-  const double before = lack(v);
-  if (before < 1e-6) return false;
   const Vec3 x = any_tangent(normals_[v]), y = normals_[v].cross(x);
   float length = 0;
   for (const Index f : around_[v]) {
@@ -146,13 +164,16 @@ bool LocalSearch::improve(Index v) {
                 static_cast<float>(face.size() * around_[v].size());
     }
   }
+  find_near(v, length);
+  const double before = lack(v, std::numeric_limits<double>::infinity());
+  if (before < 1e-6) return false;
   Vec3 best = mesh_.positions[v];
   Placement::Seed best_seed = placement_.seed(v);
   double least = before;
   const auto attempt = [&](const Vec3& target) {
     placement_.set_seed(v, best_seed);
     mesh_.positions[v] = placement_.place(target, v);
-    const double now = lack(v);
+    const double now = lack(v, least);
     if (now < least) {
       least = now;
       best = mesh_.positions[v];

@@ -25,7 +25,7 @@ class Mending {
 
   /// With as many rings of faces around the bad ones as it takes.
   void run() {
-    for (const int rings : {2, 4}) {
+    for (const int rings : {2, 3, 5}) {
       const Pairs bad = find_bad();
       if (bad.empty()) return;
       const std::vector<Place> places = find_places(bad, rings);
@@ -192,8 +192,8 @@ class Mending {
   /// Off the surface, but not far: each vertex towards its neighbours, until nothing crosses.
   /// Returns whether that came to be. Vertices that hold an end out move only if `with_ends`.
   bool loosen(const Place& place, bool with_ends) {
-    constexpr int steps = 12;
-    const float farthest = 1.0f * mean_edge(place);
+    constexpr int steps = 30;
+    const float farthest = mean_edge(place);
     for (int step = 0; step < steps && !is_mended(place); ++step) {
       std::vector<Vec3> next;
       for (std::size_t k = 0; k < place.vertices.size(); ++k) {
