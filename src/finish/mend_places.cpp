@@ -23,18 +23,32 @@ class Mending {
           LocalSearch& search, const Context& context)
       : mesh_(mesh), around_(around), placement_(placement), search_(search), context_(context) {}
 
-  /// With as many rings of faces around the bad ones as it takes.
   void run() {
+    // With as many rings of faces around the bad ones as it takes.
     for (const int rings : {2, 3, 5}) {
-      const Pairs bad = find_bad();
-      if (bad.empty()) return;
-      const std::vector<Place> places = find_places(bad, rings);
-      for (const Place& place : places) {
-        context_.check();
-        if (!mend(place)) restore(place);
+      const Pairs crossings = find_crossings(mesh_, context_);
+      if (crossings.empty()) break;
+      std::vector<Place> places = find_places(crossings, rings);
+      for (Place& place : places) {
+        place.needed = std::clamp(worst(place), 0.01f, acceptable);
+        place.inherent = surface_crosses(place);
       }
-      search_.keep_apart({});
-      restore_crossing(places);
+      mend(places);
+    }
+    for (const int rings : {2, 3, 5}) {
+      Pairs bad;
+      for (Index f = 0; f < mesh_.faces.size(); ++f) {
+        if (search_.quality(f) < acceptable) bad.push_back({f, f});
+      }
+      if (bad.empty()) return;
+      std::vector<Place> places = find_places(bad, rings);
+      const std::vector<std::size_t> crossings = count_crossings(places);
+      for (std::size_t k = 0; k < places.size(); ++k) {
+        places[k].needed = acceptable;
+        places[k].worse = count_worse(places[k]) - 1;  // to help one is good
+        places[k].crossings = crossings[k];
+      }
+      mend(places);
     }
   }
 
@@ -46,19 +60,51 @@ class Mending {
     std::vector<Index> faces;     // in order
     std::vector<Index> vertices;  // those with all of their faces in it
     std::vector<LocalSearch::Place> before;
-    float worst = 1;  // quality of the faces
+    float needed = 0;           // quality that faces must come to have
+    std::size_t worse = 0;      // how many may stay without
+    std::size_t crossings = 0;  // pairs of faces that may pass through each other
+    bool inherent = false;      // whether those that do cannot be helped, as the surface does
   };
 
+  static constexpr float acceptable = 0.1f;
   // Larger places, in faces, are left alone; where the surface itself crosses even sooner.
-  static constexpr std::size_t largest_place = 500, largest_inherent = 100;
+  static constexpr std::size_t largest_place = 300, largest_inherent = 60;
 
-  /// Pairs of faces that pass through each other; those that are turned over with themselves.
-  Pairs find_bad() const {
-    Pairs bad = find_crossings(mesh_, context_);
-    for (Index f = 0; f < mesh_.faces.size(); ++f) {
-      if (search_.quality(f) <= 0) bad.push_back({f, f});
+  void mend(const std::vector<Place>& places) {
+    for (const Place& place : places) {
+      context_.check();
+      if (!mend(place)) restore(place);
     }
-    return bad;
+    search_.keep_apart({});
+    // What has moved may have come upon something beyond its place.
+    const std::vector<std::size_t> crossings = count_crossings(places);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      if (crossings[k] > places[k].crossings) restore(places[k]);
+    }
+  }
+
+  bool mend(const Place& place) {
+    if (place.inherent && place.faces.size() > largest_inherent) return false;
+    if (slide(place)) return true;
+    if (place.inherent) return false;
+    restore(place);
+    if (loosen(place, false) || slide(place)) return true;
+    restore(place);
+    return slide(place) || loosen(place, true);
+  }
+
+  /// How many pairs of faces pass through each other of which one lies in each place.
+  std::vector<std::size_t> count_crossings(const std::vector<Place>& places) const {
+    const Pairs pairs = find_crossings(mesh_, context_);
+    std::vector<std::size_t> result;
+    for (const Place& place : places) {
+      const auto holds = [&](Index f) {
+        return std::binary_search(place.faces.begin(), place.faces.end(), f);
+      };
+      result.push_back(static_cast<std::size_t>(std::count_if(
+          pairs.begin(), pairs.end(), [&](const auto& c) { return holds(c[0]) || holds(c[1]); })));
+    }
+    return result;
   }
 
   std::vector<Place> find_places(const Pairs& bad, int rings) const {
@@ -97,7 +143,6 @@ class Mending {
       if (place.vertices.empty()) continue;
       sort_unique(place.vertices);
       for (const Index v : place.vertices) place.before.push_back(search_.place(v));
-      place.worst = worst(place);
       places.push_back(std::move(place));
     }
     return places;
@@ -133,45 +178,21 @@ class Mending {
     return least;
   }
 
-  bool crosses(const Place& place) const {
-    for (std::size_t i = 0; i < place.faces.size(); ++i) {
-      for (std::size_t j = i + 1; j < place.faces.size(); ++j) {
-        if (penetration(mesh_, place.faces[i], place.faces[j]) > 0) return true;
-      }
-    }
-    return false;
+  std::size_t count_worse(const Place& place) const {
+    return static_cast<std::size_t>(
+        std::count_if(place.faces.begin(), place.faces.end(),
+                      [&](Index f) { return search_.quality(f) < place.needed; }));
   }
 
   bool is_mended(const Place& place) const {
-    constexpr float acceptable = 0.1f, least = 0.01f;
-    return worst(place) >= std::clamp(place.worst, least, acceptable) && !crosses(place);
-  }
-
-  bool mend(const Place& place) {
-    const bool inherent = surface_crosses(place);
-    if (inherent && place.faces.size() > largest_inherent) return false;
-    if (slide(place)) return true;
-    if (inherent) return false;
-    restore(place);
-    if (loosen(place, false) || slide(place)) return true;
-    restore(place);
-    return slide(place) || loosen(place, true);
-  }
-
-  /// Takes back what has come upon something beyond its place.
-  void restore_crossing(const std::vector<Place>& places) {
-    std::vector<Index> crossing;
-    for (const auto& [f, g] : find_crossings(mesh_, context_)) {
-      crossing.push_back(f);
-      crossing.push_back(g);
-    }
-    for (const Place& place : places) {
-      if (std::any_of(crossing.begin(), crossing.end(), [&](Index f) {
-            return std::binary_search(place.faces.begin(), place.faces.end(), f);
-          })) {
-        restore(place);
+    if (count_worse(place) > place.worse) return false;
+    std::size_t crossings = 0;
+    for (std::size_t i = 0; i < place.faces.size(); ++i) {
+      for (std::size_t j = i + 1; j < place.faces.size(); ++j) {
+        crossings += penetration(mesh_, place.faces[i], place.faces[j]) > 0;
       }
     }
+    return crossings <= place.crossings;
   }
 
   void restore(const Place& place) {
@@ -184,7 +205,7 @@ class Mending {
   bool slide(const Place& place) {
     search_.keep_apart(place.faces);
     for (const Index v : place.vertices) search_.touch(v);
-    constexpr int sweeps = 30;
+    constexpr int sweeps = 10;
     search_.improve(place.vertices, sweeps, context_);
     return is_mended(place);
   }
