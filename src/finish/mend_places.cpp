@@ -31,9 +31,8 @@ class Mending {
       std::vector<Place> places = find_places(crossings, rings);
       for (Place& place : places) {
         place.needed = std::clamp(worst(place), 0.01f, acceptable);
-        place.inherent = surface_crosses(place);
       }
-      mend(places);
+      mend(places, [&](const Place& place) { return part(place); });
     }
     for (const int rings : {2, 3, 5}) {
       Pairs bad;
@@ -48,7 +47,7 @@ class Mending {
         places[k].worse = count_worse(places[k]) - 1;  // to help one is good
         places[k].crossings = crossings[k];
       }
-      mend(places);
+      mend(places, [&](const Place& place) { return reshape(place); });
     }
   }
 
@@ -63,17 +62,17 @@ class Mending {
     float needed = 0;           // quality that faces must come to have
     std::size_t worse = 0;      // how many may stay without
     std::size_t crossings = 0;  // pairs of faces that may pass through each other
-    bool inherent = false;      // whether those that do cannot be helped, as the surface does
   };
 
   static constexpr float acceptable = 0.1f;
   // Larger places, in faces, are left alone; where the surface itself crosses even sooner.
   static constexpr std::size_t largest_place = 300, largest_inherent = 60;
 
-  void mend(const std::vector<Place>& places) {
+  template <typename How>
+  void mend(const std::vector<Place>& places, const How& how) {
     for (const Place& place : places) {
       context_.check();
-      if (!mend(place)) restore(place);
+      if (!how(place)) restore(place);
     }
     search_.keep_apart({});
     // What has moved may have come upon something beyond its place.
@@ -83,14 +82,21 @@ class Mending {
     }
   }
 
-  bool mend(const Place& place) {
-    if (place.inherent && place.faces.size() > largest_inherent) return false;
+  bool part(const Place& place) {
+    const bool inherent = surface_crosses(place);
+    if (inherent && place.faces.size() > largest_inherent) return false;
     if (slide(place)) return true;
-    if (place.inherent) return false;
+    if (inherent) return false;
     restore(place);
     if (loosen(place, false) || slide(place)) return true;
     restore(place);
     return slide(place) || loosen(place, true);
+  }
+
+  bool reshape(const Place& place) {
+    if (loosen(place, false)) return true;
+    restore(place);
+    return loosen(place, true);
   }
 
   /// How many pairs of faces pass through each other of which one lies in each place.

@@ -9,9 +9,9 @@
 namespace meshgrain {
 
 /// Mends what untangle() leaves, mostly in crevices and thin parts: faces that pass through each
-/// other, are turned over or nearly degenerate. They move over the surface, or if that fails a little off it. Where
-/// nothing helps, or the surface passes through itself, all stays as it was. `search` is over the
-/// same mesh.
+/// other, are turned over or nearly degenerate. They move over the surface, or if that fails a
+/// little off it. Where nothing helps, or the surface passes through itself, all stays as it was.
+/// `search` is over the same mesh.
 void mend_places(const Mesh& mesh, const VertexFaces& around, const Placement& placement,
                  LocalSearch& search, const Context& context);
 
