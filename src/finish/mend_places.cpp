@@ -1,13 +1,12 @@
 #include "finish/mend_places.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
-#include <map>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
 #include "finish/crossings.h"
-#include "util/union_find.h"
 
 namespace meshgrain {
 namespace {
@@ -25,133 +24,119 @@ class Mending {
 
   void run() {
     // With as many rings of faces around the bad ones as it takes.
+    std::vector<std::uint8_t> inherent(mesh_.faces.size(), 0);  // beside crossings of the surface
     for (const int rings : {2, 3, 5}) {
-      const Pairs crossings = find_crossings(mesh_, context_);
+      const auto crossings = find_crossings(mesh_, context_);
       if (crossings.empty()) break;
-      std::vector<Place> places = find_places(crossings, rings);
-      for (Place& place : places) {
-        place.needed = std::clamp(worst(place), 0.01f, acceptable);
+      std::size_t tried = 0;
+      for (const auto& [f, g] : crossings) {
+        if (inherent[f] || inherent[g] || penetration(mesh_, f, g) == 0) continue;
+        Place place = around(f, g, rings);
+        if (surface_crosses(place)) {
+          inherent[f] = inherent[g] = 1;
+          continue;
+        }
+        if (++tried > most_tried) break;
+        --place.crossings;
+        if (!part(place)) restore(place);
       }
-      mend(places, [&](const Place& place) { return part(place); });
     }
+    search_.keep_apart({});
     for (const int rings : {2, 3, 5}) {
-      Pairs bad;
       for (Index f = 0; f < mesh_.faces.size(); ++f) {
-        if (search_.quality(f) < acceptable) bad.push_back({f, f});
+        if (search_.quality(f) >= acceptable) continue;
+        Place place = around(f, f, rings);
+        --place.worse;
+        if (!reshape(place)) restore(place);
       }
-      if (bad.empty()) return;
-      std::vector<Place> places = find_places(bad, rings);
-      const std::vector<std::size_t> crossings = count_crossings(places);
-      for (std::size_t k = 0; k < places.size(); ++k) {
-        places[k].needed = acceptable;
-        places[k].worse = count_worse(places[k]) - 1;  // to help one is good
-        places[k].crossings = crossings[k];
-      }
-      mend(places, [&](const Place& place) { return reshape(place); });
     }
   }
 
  private:
-  using Pairs = std::vector<std::array<Index, 2>>;
-
-  /// Bad faces, with some rings of others, and how they were. Places have no face in common.
+  /// Two bad faces with some rings of others, how they are, and what may stay bad among them.
   struct Place {
-    std::vector<Index> faces;     // in order
+    std::vector<Index> faces;
     std::vector<Index> vertices;  // those with all of their faces in it
     std::vector<LocalSearch::Place> before;
-    float needed = 0;           // quality that faces must come to have
-    std::size_t worse = 0;      // how many may stay without
-    std::size_t crossings = 0;  // pairs of faces that may pass through each other
+    std::size_t crossings = 0;  // pairs of faces that pass through each other
+    std::size_t worse = 0;      // faces that are not acceptable
   };
 
-  static constexpr float acceptable = 0.1f;
-  // Larger places, in faces, are left alone; where the surface itself crosses even sooner.
-  static constexpr std::size_t largest_place = 300, largest_inherent = 60;
+  static constexpr float acceptable = 0.1f;            // quality of a face
+  static constexpr std::size_t largest_to_slide = 80;  // faces of a place: it takes long
+  // A mesh with more crossings is too coarse for its surface: no need to try for minutes.
+  static constexpr std::size_t most_tried = 50;
 
-  template <typename How>
-  void mend(const std::vector<Place>& places, const How& how) {
-    for (const Place& place : places) {
-      context_.check();
-      if (!how(place)) restore(place);
+  Place around(Index f, Index g, int rings) const {
+    context_.check();
+    Place place;
+    place.faces = {f, g};
+    sort_unique(place.faces);
+    for (int ring = 0; ring < rings; ++ring) {
+      std::vector<Index> wider;
+      for (const Index v : vertices_of(place.faces)) {
+        wider.insert(wider.end(), around_[v].begin(), around_[v].end());
+      }
+      sort_unique(wider);
+      place.faces.swap(wider);
     }
-    search_.keep_apart({});
-    // What has moved may have come upon something beyond its place.
-    const std::vector<std::size_t> crossings = count_crossings(places);
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      if (crossings[k] > places[k].crossings) restore(places[k]);
+    for (const Index v : vertices_of(place.faces)) {
+      if (std::ranges::includes(place.faces, around_[v])) place.vertices.push_back(v);
     }
+    for (const Index v : place.vertices) place.before.push_back(search_.place(v));
+    place.crossings = count_crossings(place);
+    place.worse = count_worse(place);
+    return place;
+  }
+
+  std::vector<Index> vertices_of(const std::vector<Index>& faces) const {
+    std::vector<Index> result;
+    for (const Index f : faces) {
+      result.insert(result.end(), mesh_.faces[f].begin(), mesh_.faces[f].end());
+    }
+    sort_unique(result);
+    return result;
+  }
+
+  std::size_t count_crossings(const Place& place) const {
+    std::vector<Eigen::AlignedBox3f> boxes(place.faces.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      for (const Index v : mesh_.faces[place.faces[i]]) boxes[i].extend(mesh_.positions[v]);
+    }
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      for (std::size_t j = i + 1; j < boxes.size(); ++j) {
+        count +=
+            boxes[i].intersects(boxes[j]) && penetration(mesh_, place.faces[i], place.faces[j]) > 0;
+      }
+    }
+    return count;
+  }
+
+  std::size_t count_worse(const Place& place) const {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        place.faces, [&](Index f) { return search_.quality(f) < acceptable; }));
+  }
+
+  bool is_mended(const Place& place) const {
+    return count_worse(place) <= place.worse && count_crossings(place) <= place.crossings;
   }
 
   bool part(const Place& place) {
-    const bool inherent = surface_crosses(place);
-    if (inherent && place.faces.size() > largest_inherent) return false;
-    if (slide(place)) return true;
-    if (inherent) return false;
+    const bool small = place.faces.size() <= largest_to_slide;
+    if (small) {
+      if (slide(place)) return true;
+      restore(place);
+    }
+    if (loosen(place, false) || (small && slide(place))) return true;
     restore(place);
-    if (loosen(place, false) || slide(place)) return true;
-    restore(place);
-    return slide(place) || loosen(place, true);
+    return loosen(place, true);
   }
 
   bool reshape(const Place& place) {
     if (loosen(place, false)) return true;
     restore(place);
     return loosen(place, true);
-  }
-
-  /// How many pairs of faces pass through each other of which one lies in each place.
-  std::vector<std::size_t> count_crossings(const std::vector<Place>& places) const {
-    const Pairs pairs = find_crossings(mesh_, context_);
-    std::vector<std::size_t> result;
-    for (const Place& place : places) {
-      const auto holds = [&](Index f) {
-        return std::binary_search(place.faces.begin(), place.faces.end(), f);
-      };
-      result.push_back(static_cast<std::size_t>(std::count_if(
-          pairs.begin(), pairs.end(), [&](const auto& c) { return holds(c[0]) || holds(c[1]); })));
-    }
-    return result;
-  }
-
-  std::vector<Place> find_places(const Pairs& bad, int rings) const {
-    UnionFind sets(mesh_.faces.size());
-    std::vector<Index> involved;
-    for (const auto& [f, g] : bad) {
-      std::vector<Index> faces{f, g};
-      for (int ring = 0; ring < rings; ++ring) {
-        std::vector<Index> wider;
-        for (const Index face : faces) {
-          for (const Index v : mesh_.faces[face]) {
-            wider.insert(wider.end(), around_[v].begin(), around_[v].end());
-          }
-        }
-        sort_unique(wider);
-        faces.swap(wider);
-      }
-      for (const Index face : faces) sets.unite(f, face);
-      involved.insert(involved.end(), faces.begin(), faces.end());
-    }
-    sort_unique(involved);
-    std::map<Index, Place> by_root;
-    for (const Index f : involved) by_root[sets.find(f)].faces.push_back(f);
-    std::vector<Place> places;
-    for (auto& [root, place] : by_root) {
-      if (place.faces.size() > largest_place) continue;
-      for (const Index f : place.faces) {
-        for (const Index v : mesh_.faces[f]) {
-          const auto around = around_[v];
-          if (std::all_of(around.begin(), around.end(),
-                          [&](Index g) { return sets.find(g) == root; })) {
-            place.vertices.push_back(v);
-          }
-        }
-      }
-      if (place.vertices.empty()) continue;
-      sort_unique(place.vertices);
-      for (const Index v : place.vertices) place.before.push_back(search_.place(v));
-      places.push_back(std::move(place));
-    }
-    return places;
   }
 
   float mean_edge(const Place& place) const {
@@ -176,29 +161,6 @@ class Mending {
     }
     const Mesh piece = placement_.projector().cut_out(low, high, std::move(nodes));
     return !find_crossings(piece, context_).empty();
-  }
-
-  float worst(const Place& place) const {
-    float least = 1;
-    for (const Index f : place.faces) least = std::min(least, search_.quality(f));
-    return least;
-  }
-
-  std::size_t count_worse(const Place& place) const {
-    return static_cast<std::size_t>(
-        std::count_if(place.faces.begin(), place.faces.end(),
-                      [&](Index f) { return search_.quality(f) < place.needed; }));
-  }
-
-  bool is_mended(const Place& place) const {
-    if (count_worse(place) > place.worse) return false;
-    std::size_t crossings = 0;
-    for (std::size_t i = 0; i < place.faces.size(); ++i) {
-      for (std::size_t j = i + 1; j < place.faces.size(); ++j) {
-        crossings += penetration(mesh_, place.faces[i], place.faces[j]) > 0;
-      }
-    }
-    return crossings <= place.crossings;
   }
 
   void restore(const Place& place) {

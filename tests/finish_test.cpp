@@ -1,0 +1,148 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "finish/crossings.h"
+#include "meshgrain/remesh.h"
+#include "meshgrain/shapes.h"
+#include "meshgrain/statistics.h"
+#include "same_topology.h"
+
+namespace meshgrain {
+namespace {
+
+Mesh two_triangles(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  Mesh mesh;
+  mesh.positions.assign(a.begin(), a.end());
+  mesh.positions.insert(mesh.positions.end(), b.begin(), b.end());
+  mesh.faces.push_back(std::array<Index, 3>{0, 1, 2});
+  mesh.faces.push_back(std::array<Index, 3>{3, 4, 5});
+  return mesh;
+}
+
+const std::array<Vec3, 3> flat{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
+
+TEST(Crossings, AnEdgeThroughAFace) {
+  const Mesh mesh =
+      two_triangles(flat, {Vec3(0.2f, 0.2f, -0.1f), Vec3(0.2f, 0.2f, 0.5f), Vec3(2, 2, 0.5f)});
+  EXPECT_GT(penetration(mesh, 0, 1), 0.1);
+  EXPECT_EQ(penetration(mesh, 0, 1), penetration(mesh, 1, 0));
+  EXPECT_EQ(find_crossings(mesh, Context()).size(), 1u);
+}
+
+TEST(Crossings, BesideAndAboveIsApart) {
+  for (const Vec3& away : {Vec3(0, 0, 0.01f), Vec3(2, 0, 0), Vec3(0, -1.1f, 0.2f)}) {
+    std::array<Vec3, 3> other = flat;
+    for (Vec3& p : other) p += away;
+    const Mesh mesh = two_triangles(flat, other);
+    EXPECT_EQ(penetration(mesh, 0, 1), 0) << away.transpose();
+    EXPECT_TRUE(find_crossings(mesh, Context()).empty());
+  }
+}
+
+/// Faces of very different sizes meet in the cells of the finder's grid too.
+TEST(Crossings, AreFoundInAnyOrderAndSize) {
+  Mesh mesh = sample_shape("sphere", 0.5);
+  EXPECT_TRUE(find_crossings(mesh, Context()).empty());
+  const auto first = static_cast<Index>(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(), {Vec3(-9, -9, 0), Vec3(9, -9, 0), Vec3(0, 20, 0)});
+  mesh.faces.push_back(std::array<Index, 3>{first, first + 1, first + 2});
+  const auto plane = static_cast<Index>(mesh.faces.size() - 1);
+  const auto found = find_crossings(mesh, Context());
+  std::size_t expected = 0;
+  for (Index f = 0; f < plane; ++f) expected += penetration(mesh, f, plane) > 0;
+  EXPECT_GT(expected, 10u);
+  EXPECT_EQ(found.size(), expected);
+}
+
+/// The surface that a profile (radius, height) from axis to axis sweeps around the z-axis.
+Mesh turned(const std::vector<std::array<double, 2>>& profile, Index around) {
+  Mesh mesh;
+  const auto rows = static_cast<Index>(profile.size()) - 2;  // between the poles
+  mesh.positions.push_back(Vec3(0, 0, static_cast<float>(profile.front()[1])));
+  for (Index r = 1; r <= rows; ++r) {
+    for (Index k = 0; k < around; ++k) {
+      const double angle = 2 * std::numbers::pi * k / around;
+      mesh.positions.push_back(Eigen::Vector3d(profile[r][0] * std::cos(angle),
+                                               profile[r][0] * std::sin(angle), profile[r][1])
+                                   .cast<float>());
+    }
+  }
+  mesh.positions.push_back(Vec3(0, 0, static_cast<float>(profile.back()[1])));
+  const auto last = static_cast<Index>(mesh.positions.size() - 1);
+  const auto at = [&](Index row, Index k) { return 1 + (row - 1) * around + k % around; };
+  for (Index k = 0; k < around; ++k) {
+    mesh.faces.push_back(std::array<Index, 3>{0, at(1, k + 1), at(1, k)});
+    mesh.faces.push_back(std::array<Index, 3>{last, at(rows, k), at(rows, k + 1)});
+    for (Index r = 1; r < rows; ++r) {
+      mesh.faces.push_back(
+          std::array<Index, 4>{at(r, k), at(r, k + 1), at(r + 1, k + 1), at(r + 1, k)});
+    }
+  }
+  return mesh;
+}
+
+Mesh remeshed(const Mesh& mesh, std::size_t count, OutputFaces faces = OutputFaces::quads) {
+  RemeshOptions options;
+  options.face_count = count;
+  options.faces = faces;
+  return remesh(mesh, options).mesh;
+}
+
+/// A bowl whose wall is thinner than the faces are wide.
+TEST(Finish, ThinWallsDoNotPassThroughEachOther) {
+  std::vector<std::array<double, 2>> profile;
+  constexpr int steps = 60;
+  constexpr double wall = 0.06;
+  for (int k = 0; k <= steps; ++k) {
+    const double angle = std::numbers::pi / 2 * k / steps;
+    profile.push_back({std::sin(angle), -std::cos(angle)});
+  }
+  for (int k = steps; k >= 0; --k) {
+    const double angle = std::numbers::pi / 2 * k / steps;
+    profile.push_back({(1 - wall) * std::sin(angle), -(1 - wall) * std::cos(angle)});
+  }
+  profile.front()[0] = profile.back()[0] = 0;
+  const Mesh bowl = turned(profile, 200);
+  ASSERT_TRUE(find_crossings(bowl, Context()).empty());
+  for (const std::size_t count : {1000, 2000, 4000}) {
+    for (const OutputFaces faces : {OutputFaces::quads, OutputFaces::triangles}) {
+      SCOPED_TRACE(testing::Message() << count << " faces of kind " << static_cast<int>(faces));
+      const Mesh result = remeshed(bowl, count, faces);
+      made::expect_same_topology(mesh_statistics(result), mesh_statistics(bowl));
+      EXPECT_TRUE(find_crossings(result, Context()).empty());
+    }
+  }
+}
+
+/// A ball with a horn about as thick as a face of the target is large.
+TEST(Finish, HornsAreReached) {
+  std::vector<std::array<double, 2>> profile;
+  constexpr int steps = 80;
+  constexpr double thin = 0.12, tip = 2.2;
+  for (int k = 0; k <= steps; ++k) {
+    const double angle = (std::numbers::pi - std::asin(thin)) * k / steps;
+    profile.push_back({std::sin(angle), -std::cos(angle)});
+  }
+  const double base = profile.back()[1];
+  for (int k = 1; k <= steps; ++k) {
+    const double share = static_cast<double>(k) / steps;
+    profile.push_back({thin * (1 - 0.8 * share), base + (tip - base) * share});
+  }
+  profile.push_back({0, tip});
+  const Mesh shape = turned(profile, 120);
+  for (const std::size_t count : {500, 1000, 2000}) {
+    const Mesh result = remeshed(shape, count);
+    float highest = 0;
+    for (const Vec3& p : result.positions) highest = std::max(highest, p.z());
+    EXPECT_GT(highest, tip - 1.2 * mesh_statistics(result).edge_mean) << count << " faces";
+  }
+}
+
+}  // namespace
+}  // namespace meshgrain
