@@ -36,6 +36,9 @@ void check(const RemeshOptions& options) {
   if (!(options.regularity >= 0 && options.regularity <= 1)) {
     throw Error("the regularity must lie between 0 and 1");
   }
+  if (!(options.min_component >= 0) || !std::isfinite(options.min_component)) {
+    throw Error("the least number of faces of a piece must not be negative");
+  }
   if (options.smoothing < 0) throw Error("the number of smoothing iterations must not be negative");
   if (options.solver.sweeps < 1) throw Error("at least one sweep a level is needed");
 }
@@ -91,6 +94,7 @@ class Pipeline {
       target_ = Target(options_, result_.report.input_vertices, frame_.scale);
       enter(frame_, input);
       surface_ = is_cloud_ ? std::move(input) : triangulate(input);
+      drop_pieces();
     });
   }
 
@@ -168,8 +172,9 @@ class Pipeline {
       });
       Extraction found = stage_("extraction", [&] { return extract(positions); });
       const double ratio = target_.count_ratio(found.mesh);
-      // Faces can be taken away, but not added.
-      const double error = ratio < 1 ? 1 / ratio - 1 : (ratio - 1) / 5;
+      // A few faces too many can be taken away, but not added.
+      const bool met = std::abs(ratio - 1) < tolerance;
+      const double error = met ? 0 : ratio < 1 ? 1 / ratio - 1 : (ratio - 1) / 2;
       if (error < least_error) {
         least_error = error;
         extraction_ = std::move(found);
@@ -243,6 +248,16 @@ class Pipeline {
   }
 
  private:
+  void drop_pieces() {
+    if (is_cloud_ || options_.min_component == 0) return;
+    const double area = options_.min_component * target_.face_area(surface_area(surface_));
+    if (const std::size_t dropped = drop_small_pieces(surface_, area)) {
+      result_.report.notes.push_back(
+          "left out " + std::to_string(dropped) + " pieces with room for fewer than " +
+          std::to_string(std::lround(options_.min_component)) + " faces");
+    }
+  }
+
   const Graph& graph() const { return hierarchy_.levels[0]; }
   Fields& fields() { return result_.fields; }
 

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <utility>
+
 namespace meshgrain {
 namespace {
 
@@ -88,6 +91,25 @@ TEST(Clean, RemovesDuplicatePointsOfACloud) {
   const CleanReport report = clean(cloud);
   EXPECT_EQ(report.duplicate_points, 1u);
   EXPECT_EQ(cloud.values, (std::vector<float>{0, 1, 3}));
+}
+
+TEST(DropSmallPieces, KeepsTheLargestAndWhatIsLargeEnough) {
+  Mesh mesh;
+  for (const float size : {1.0f, 3.0f, 2.0f}) {  // areas 0.5, 4.5, 2
+    const auto first = static_cast<Index>(mesh.positions.size());
+    const Vec3 corner(10 * size, 0, 0);
+    mesh.positions.insert(mesh.positions.end(),
+                          {corner, corner + Vec3(size, 0, 0), corner + Vec3(0, size, 0)});
+    mesh.faces.push_back(std::array<Index, 3>{first, first + 1, first + 2});
+  }
+  Mesh some = mesh, all = mesh;
+  EXPECT_EQ(drop_small_pieces(mesh, 0.4), 0u);
+  EXPECT_EQ(mesh.faces.size(), 3u);
+  EXPECT_EQ(drop_small_pieces(some, 1), 1u);
+  EXPECT_EQ(some.positions.size(), 6u);
+  EXPECT_EQ(some.positions[std::as_const(some.faces)[0][0]], Vec3(30, 0, 0));
+  EXPECT_EQ(drop_small_pieces(all, 100), 2u);
+  EXPECT_EQ(all.faces.size(), 1u);
 }
 
 }  // namespace

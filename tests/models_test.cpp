@@ -68,8 +68,11 @@ class EveryModel : public Models {
       clean(input);
       const Mesh result = remesh_to(input, faces).mesh;
       const MeshStatistics s = mesh_statistics(result);
-      // Points have no way to come nearer than the first guesses do.
-      const double tolerance = input.is_point_cloud() ? 0.1 : 0.0101;
+      // Points have no way to come nearer than the first guesses do; the pieces that a surface is
+      // cut into where it is not manifold lose faces when they are joined again.
+      const double tolerance = input.is_point_cloud()                ? 0.1
+                               : is_manifold(mesh_statistics(input)) ? 0.0101
+                                                                     : 0.02;
       EXPECT_NEAR(static_cast<double>(s.faces), wanted, tolerance * wanted);
       EXPECT_EQ(s.isolated_vertices, 0u);
       for (const Vec3& p : result.positions) EXPECT_TRUE(p.allFinite());

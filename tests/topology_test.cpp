@@ -52,5 +52,27 @@ TEST(Topology, IsThatOfTheInput) {
   }
 }
 
+/// A piece without room for one face comes back, closed, unless it is not wanted.
+TEST(Topology, SmallPiecesStayUnlessTheyAreNotWanted) {
+  Mesh both = sample_shape("sphere");
+  const Mesh small = sample_shape("sphere", 0.3);
+  const auto first = static_cast<Index>(both.positions.size());
+  for (const Vec3& p : small.positions) both.positions.push_back(0.02f * p + Vec3(3, 0, 0));
+  for (std::size_t f = 0; f < small.faces.size(); ++f) {
+    std::vector<Index> face(small.faces[f].begin(), small.faces[f].end());
+    for (Index& v : face) v += first;
+    both.faces.push_back(face);
+  }
+  RemeshOptions options;
+  options.face_count = 1000;
+  const RemeshResult kept = remesh(both, options);
+  made::expect_same_topology(mesh_statistics(kept.mesh), mesh_statistics(both));
+  options.min_component = 5;
+  const RemeshResult dropped = remesh(both, options);
+  made::expect_same_topology(mesh_statistics(dropped.mesh),
+                             mesh_statistics(sample_shape("sphere")));
+  EXPECT_EQ(dropped.report.notes.size(), kept.report.notes.size() + 1);
+}
+
 }  // namespace
 }  // namespace meshgrain

@@ -145,6 +145,11 @@ void add_options(CLI::App& app, Arguments& a) {
   faces(app.add_option("--regularity", o.regularity,
                        "0 (best shapes) to 1 (fewest irregular vertices) (0.5)")
             ->type_name("X"));
+  faces(app.add_option("--min-component", o.min_component,
+                       "leave out pieces with room for fewer faces than this (0)")
+            ->check(refuse_unless_finite)
+            ->check(CLI::NonNegativeNumber)
+            ->type_name("N"));
   faces(app.add_flag("--manifold", o.manifold, "drop faces where the result is not manifold"));
 
   const auto follow = [&](CLI::Option* option) { option->group("What to follow"); };

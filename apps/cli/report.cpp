@@ -97,6 +97,8 @@ Json to_json(const RemeshOptions& o) {
                {"curvature", o.curvature.strength},
                {"curvature_hard", o.curvature.hard_degrees},
                {"smooth", o.smoothing},
+               {"regularity", o.regularity},
+               {"min_component", o.min_component},
                {"manifold", o.manifold}};
   if (o.sizing.kind == Sizing::Kind::distance) {
     const auto& p = o.sizing.point;

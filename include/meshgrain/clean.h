@@ -26,4 +26,8 @@ struct CleanReport {
 /// of what is left stays, and normals and values follow their vertices. Does not weld vertices.
 CleanReport clean(Mesh& mesh);
 
+/// Removes pieces of less area (squared input units), but never the largest, and returns their
+/// number. Pieces are faces that hang together by shared vertices. Order and attributes as above.
+std::size_t drop_small_pieces(Mesh& mesh, double least_area);
+
 }  // namespace meshgrain

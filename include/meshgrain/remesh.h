@@ -43,6 +43,9 @@ struct RemeshOptions {
   CurvatureAlignment curvature;
   int smoothing = 72;     ///< Iterations of smooth() (0: only put onto the surface).
   bool manifold = false;  ///< Drop what is not manifold.
+  /// Leave out pieces of a mesh that have room for fewer faces than this. Others come back coarse,
+  /// but closed where they were.
+  double min_component = 0;
 
   /// Use these instead of solving for an orientation field (and a position field, if that has
   /// points). Values are taken from the nearest node, so the surfaces need not be the same.

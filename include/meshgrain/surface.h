@@ -5,7 +5,9 @@
 
 namespace meshgrain {
 
-/// Area of all faces (fan triangles), in squared input units. Zero for a point cloud.
+/// Area of a face (of its fan's triangles), in squared input units, and of all faces: zero for a
+/// point cloud.
+double face_area(const Mesh& mesh, std::size_t f);
 double surface_area(const Mesh& mesh);
 
 struct EdgeLengths {

@@ -64,8 +64,10 @@ class Mending {
 
   static constexpr float acceptable = 0.1f;            // quality of a face
   static constexpr std::size_t largest_to_slide = 80;  // faces of a place: it takes long
+  static constexpr std::size_t most_crossings_to_slide = 25;
   // A mesh with more crossings is too coarse for its surface: no need to try for minutes.
   static constexpr std::size_t most_tried = 50;
+  static constexpr std::size_t most_searched = 20000;  // faces of the surface in a place
 
   Place around(Index f, Index g, int rings) const {
     context_.check();
@@ -123,7 +125,8 @@ class Mending {
   }
 
   bool part(const Place& place) {
-    const bool small = place.faces.size() <= largest_to_slide;
+    const bool small =
+        place.faces.size() <= largest_to_slide && place.crossings <= most_crossings_to_slide;
     if (small) {
       if (slide(place)) return true;
       restore(place);
@@ -151,6 +154,7 @@ class Mending {
     return sum / count;
   }
 
+  /// Or is too fine to tell.
   bool surface_crosses(const Place& place) const {
     std::vector<Index> nodes;
     Vec3 low = place.before[0].position, high = low;
@@ -159,8 +163,8 @@ class Mending {
       low = low.cwiseMin(at.position);
       high = high.cwiseMax(at.position);
     }
-    const Mesh piece = placement_.projector().cut_out(low, high, std::move(nodes));
-    return !find_crossings(piece, context_).empty();
+    const auto piece = placement_.projector().cut_out(low, high, std::move(nodes), most_searched);
+    return !piece || !find_crossings(*piece, context_).empty();
   }
 
   void restore(const Place& place) {
@@ -173,7 +177,7 @@ class Mending {
   bool slide(const Place& place) {
     search_.keep_apart(place.faces);
     for (const Index v : place.vertices) search_.touch(v);
-    constexpr int sweeps = 10;
+    constexpr int sweeps = 5;
     search_.improve(place.vertices, sweeps, context_);
     return is_mended(place);
   }

@@ -51,11 +51,13 @@ Vec3 Projector::normal(Index vertex) const {
   return length > 0 ? Vec3(sum / length) : Vec3(Vec3::Zero());
 }
 
-Mesh Projector::cut_out(const Vec3& low, const Vec3& high, std::vector<Index> from) const {
+std::optional<Mesh> Projector::cut_out(const Vec3& low, const Vec3& high, std::vector<Index> from,
+                                       std::size_t most) const {
   Mesh piece;
   if (surface_.is_point_cloud()) return piece;
   std::unordered_set<Index> seen(from.begin(), from.end()), faces;
   while (!from.empty()) {
+    if (faces.size() > most) return std::nullopt;
     const Index v = from.back();
     from.pop_back();
     for (const Index f : around_[v]) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "mesh/vertex_faces.h"
@@ -22,9 +23,10 @@ class Projector {
   /// The normal of the surface at a vertex.
   Vec3 normal(Index vertex) const;
 
-  /// The faces in and across a box that hang together there with one of the vertices `from`; none
-  /// of a point cloud.
-  Mesh cut_out(const Vec3& low, const Vec3& high, std::vector<Index> from) const;
+  /// The faces in and across a box that hang together there with one of the vertices `from`, if
+  /// there are no more than `most`; none of a point cloud.
+  std::optional<Mesh> cut_out(const Vec3& low, const Vec3& high, std::vector<Index> from,
+                              std::size_t most) const;
 
  private:
   Vec3 nearest_around(const Vec3& p, Index vertex, Index& nearest_corner) const;

@@ -4,10 +4,13 @@
 #include <bit>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "mesh/duplicates.h"
+#include "meshgrain/surface.h"
 #include "util/hash.h"
+#include "util/union_find.h"
 
 namespace meshgrain {
 namespace {
@@ -67,6 +70,24 @@ void keep_vertices(Mesh& mesh, std::span<const Index> kept) {
   compact(mesh.positions);
 }
 
+/// Returns their number.
+std::size_t drop_unused_vertices(Mesh& mesh) {
+  std::vector<Index> number(mesh.positions.size(), no_index);
+  for (const Index v : mesh.faces.corners()) number[v] = 0;
+  std::vector<Index> kept;
+  for (std::size_t v = 0; v < number.size(); ++v) {
+    if (number[v] == no_index) continue;
+    number[v] = static_cast<Index>(kept.size());
+    kept.push_back(static_cast<Index>(v));
+  }
+  const std::size_t dropped = number.size() - kept.size();
+  if (dropped > 0) {
+    for (Index& v : mesh.faces.corners()) v = number[v];
+    keep_vertices(mesh, kept);
+  }
+  return dropped;
+}
+
 }  // namespace
 
 CleanReport clean(Mesh& mesh) {
@@ -96,21 +117,36 @@ CleanReport clean(Mesh& mesh) {
       faces.push_back(face);
   }
 
-  std::vector<Index> number(mesh.positions.size(), no_index);
-  for (const Index v : faces.corners()) number[v] = 0;
-  std::vector<Index> kept;
-  for (std::size_t v = 0; v < number.size(); ++v)
-    if (number[v] != no_index) {
-      number[v] = static_cast<Index>(kept.size());
-      kept.push_back(static_cast<Index>(v));
-    }
-  report.unused_vertices = number.size() - kept.size();
-  if (report.unused_vertices > 0) {
-    for (Index& v : faces.corners()) v = number[v];
-    keep_vertices(mesh, kept);
-  }
   mesh.faces = std::move(faces);
+  report.unused_vertices = drop_unused_vertices(mesh);
   return report;
+}
+
+std::size_t drop_small_pieces(Mesh& mesh, double least_area) {
+  if (mesh.faces.empty()) return 0;
+  UnionFind pieces(mesh.positions.size());
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto face = std::as_const(mesh.faces)[f];
+    for (const Index v : face) pieces.unite(face[0], v);
+  }
+  std::vector<double> area(mesh.positions.size(), 0);
+  const auto piece_of = [&](std::size_t f) { return pieces.find(std::as_const(mesh.faces)[f][0]); };
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) area[piece_of(f)] += face_area(mesh, f);
+  const double least = std::min(least_area, *std::max_element(area.begin(), area.end()));
+  Faces kept;
+  kept.reserve(mesh.faces.size(), mesh.faces.corners().size());
+  std::vector<std::uint8_t> dropped(area.size(), 0);
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const Index piece = piece_of(f);
+    if (area[piece] < least) {
+      dropped[piece] = 1;
+    } else {
+      kept.push_back(std::as_const(mesh.faces)[f]);
+    }
+  }
+  mesh.faces = std::move(kept);
+  drop_unused_vertices(mesh);
+  return static_cast<std::size_t>(std::count(dropped.begin(), dropped.end(), 1));
 }
 
 }  // namespace meshgrain

@@ -8,15 +8,19 @@
 
 namespace meshgrain {
 
+double face_area(const Mesh& mesh, std::size_t f) {
+  const auto face = mesh.faces[f];
+  const Vec3& a = mesh.positions[face[0]];
+  double area = 0;
+  for (std::size_t k = 2; k < face.size(); ++k) {
+    area += 0.5 * (mesh.positions[face[k - 1]] - a).cross(mesh.positions[face[k]] - a).norm();
+  }
+  return area;
+}
+
 double surface_area(const Mesh& mesh) {
   double area = 0;
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    const auto face = mesh.faces[f];
-    const Vec3& a = mesh.positions[face[0]];
-    for (std::size_t k = 2; k < face.size(); ++k) {
-      area += 0.5 * (mesh.positions[face[k - 1]] - a).cross(mesh.positions[face[k]] - a).norm();
-    }
-  }
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) area += face_area(mesh, f);
   return area;
 }
 

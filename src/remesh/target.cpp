@@ -19,14 +19,14 @@ Target::Target(const RemeshOptions& options, std::size_t input_vertices, double 
   kind_ = options.faces;
   const bool split = options.faces == OutputFaces::quads;
   const bool dual = options.faces == OutputFaces::hexagons;
-  const double faces_per_cell = split ? 4 : options.faces == OutputFaces::triangles ? 2 : 1;
+  faces_per_cell_ = split ? 4 : options.faces == OutputFaces::triangles ? 2 : 1;
   const double vertices_per_cell = split ? 4 : dual ? 2 : 1;
   if (options.edge_length > 0) {
     // The edge of a hexagon is the triangles' divided by the root of three.
     length_ = options.edge_length * (split ? 2 : dual ? std::sqrt(3.0) : 1) / scale;
   } else if (options.face_count > 0) {
     faces_ = static_cast<double>(options.face_count);
-    cells_ = faces_ / faces_per_cell;
+    cells_ = faces_ / faces_per_cell_;
   } else {
     const auto input = static_cast<double>(input_vertices);
     vertices_ = options.vertex_count > 0 ? static_cast<double>(options.vertex_count)
@@ -37,6 +37,11 @@ Target::Target(const RemeshOptions& options, std::size_t input_vertices, double 
 
 double Target::edge_length(double area) const {
   return cells_ > 0 ? std::sqrt(area / (cells_ * cell_area_)) : length_;
+}
+
+double Target::face_area(double area) const {
+  const double length = edge_length(area);
+  return length * length * cell_area_ / faces_per_cell_;
 }
 
 EdgeLength Target::edge_lengths(const Graph& graph, const EdgeLength& relative) const {

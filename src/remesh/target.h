@@ -18,6 +18,9 @@ class Target {
   /// one asked for.
   double edge_length(double area) const;
 
+  /// The area of one face of the written mesh, if the surface has this area.
+  double face_area(double area) const;
+
   /// The edge length at every node of a graph, varying as `relative` does.
   EdgeLength edge_lengths(const Graph& graph, const EdgeLength& relative) const;
 
@@ -32,6 +35,7 @@ class Target {
   double cells_ = 0;      // wanted squares, or pairs of triangles; 0: by length
   double length_ = 0;     // wanted lattice edge length, if by length
   double cell_area_ = 1;  // in squared edge lengths
+  double faces_per_cell_ = 1;
   OutputFaces kind_ = OutputFaces::quads;
   double faces_ = 0, vertices_ = 0;  // wanted; 0 if not what was asked for
 };
