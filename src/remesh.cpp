@@ -174,7 +174,7 @@ class Pipeline {
       const double ratio = target_.count_ratio(found.mesh);
       // A few faces too many can be taken away, but not added.
       const bool met = std::abs(ratio - 1) < tolerance;
-      const double error = met ? 0 : ratio < 1 ? 1 / ratio - 1 : (ratio - 1) / 2;
+      const double error = met ? 0 : ratio < 1 ? 1 / ratio - 1 : (ratio - 1) / 5;
       if (error < least_error) {
         least_error = error;
         extraction_ = std::move(found);

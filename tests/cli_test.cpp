@@ -219,7 +219,7 @@ TEST_F(Cli, SolverOptionsChangeTheResult) {
   sample("bracket", "in.obj");
   const std::string plain = bytes("-f 500");
   EXPECT_EQ(bytes("-f 500 --solver blocks --energy extrinsic --sweeps 6 --graph vertices --weights "
-                  "uniform --sizing uniform --orientation-energy extrinsic -S 60 -k 10"),
+                  "uniform --sizing uniform --orientation-energy extrinsic -S 72 -k 10"),
             plain);
   for (const char* options :
        {"--solver random", "--solver jacobi", "--sweeps 2", "--single-level", "-i", "--intrinsic",
