@@ -35,9 +35,9 @@ struct SmoothOptions {
 /// regular polygons that fit its faces best, and back onto the surface. Border vertices move along
 /// the border, those on creases along the crease, and the ones at corners stay. Where a finger or
 /// horn of the surface would be left bare by more than an edge length, a vertex is held out there.
-/// At the end single faces that are turned over or nearly degenerate are mended, however many
-/// iterations there were (unless none). `surface` is the triangle mesh or point cloud that `graph`
-/// was built on.
+/// At the end single faces that are turned over, nearly degenerate, or pass through others are
+/// mended, however many iterations there were (unless none). `surface` is the triangle mesh or
+/// point cloud that `graph` was built on.
 void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
             const SmoothOptions& options = {}, const Context& context = Context());
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <initializer_list>
 #include <numbers>
 #include <numeric>
 #include <span>
@@ -53,20 +52,20 @@ class LatticeRepair {
 
   /// Whether one of these vertices' stars has changed since `looked` was last asked about this
   /// element: what was refused before would be refused again.
-  bool is_news(Looked& looked, Index element, std::initializer_list<Index> vertices) {
+  bool is_news(Looked& looked, Index element, std::span<const Index> vertices) {
     if (element >= looked.size()) looked.resize(element + 1 + element / 8, 0);
     const std::uint32_t last = std::exchange(looked[element], now_ + 1);
     return std::any_of(vertices.begin(), vertices.end(),
                        [&](Index v) { return changed_[v] >= last; });
   }
-  /// The same for an edge between two triangles.
-  bool is_news(Looked& looked, Index h) {
+  /// The corners of the two triangles beside an edge.
+  std::array<Index, 4> corners(Index h) const {
     const Index t = PolygonMap::twin(h);
-    return is_news(
-        looked, h / 2,
-        {map_.origin(h), map_.origin(t), map_.origin(map_.prev(h)), map_.origin(map_.prev(t))});
+    return {map_.origin(h), map_.origin(t), map_.origin(map_.prev(h)), map_.origin(map_.prev(t))};
   }
-  void touch(std::initializer_list<Index> vertices) {
+  /// The same for an edge between two triangles.
+  bool is_news(Looked& looked, Index h) { return is_news(looked, h / 2, corners(h)); }
+  void touch(std::span<const Index> vertices) {
     ++now_;
     for (const Index v : vertices) changed_[v] = now_;
   }
@@ -149,7 +148,8 @@ class LatticeRepair {
             std::tie(lattice_.clusters.cover, lattice_.clusters.on_border);
         const bool stays = border[a] != border[b] ? border[a] : cover[a] >= cover[b];
         const Index into = stays ? h : PolygonMap::twin(h);
-        if (!is_news(zero_edges_, h / 2, {a, b}) || !lattice_.may_collapse(into)) continue;
+        if (!is_news(zero_edges_, h / 2, std::array{a, b}) || !lattice_.may_collapse(into))
+          continue;
         lattice_.collapse_edge(into);
         touch_star(stays ? a : b);
         again = any = true;
@@ -172,12 +172,8 @@ class LatticeRepair {
           if (std::max(by_origin, by_target) < least_gain) break;
           if ((side == h ? by_origin : by_target) < least_gain || !flip_keeps_angles(side))
             continue;
-          const Index twin = PolygonMap::twin(side);
-          const std::array<Index, 4> corners{map_.origin(h), map_.target(h),
-                                             map_.origin(map_.prev(side)),
-                                             map_.origin(map_.prev(twin))};
+          touch(corners(side));
           lattice_.flip(side);
-          touch({corners[0], corners[1], corners[2], corners[3]});
           again = any = true;
           break;
         }
@@ -231,7 +227,7 @@ class LatticeRepair {
                           lattice_.metric().squared_length(back.t);
       if (gain < least_gain || !keeps_angles(before, after)) continue;
       lattice_.set_jump(t, back);
-      touch({map_.origin(h), map_.origin(t), map_.origin(map_.prev(h)), map_.origin(map_.prev(t))});
+      touch(corners(h));
       any = true;
     }
     return any;

@@ -88,28 +88,16 @@ double triangle_penetration(const std::vector<Vec3>& positions, const Corners& t
   return sum;
 }
 
-struct Box {
-  Vec3 low, high;
-};
+}  // namespace
 
-Box box_of(const Mesh& mesh, Index f) {
-  const auto face = mesh.faces[f];
-  Box box{mesh.positions[face[0]], mesh.positions[face[0]]};
-  for (const Index v : face) {
-    box.low = box.low.cwiseMin(mesh.positions[v]);
-    box.high = box.high.cwiseMax(mesh.positions[v]);
-  }
+Eigen::AlignedBox3f face_box(const Mesh& mesh, Index f) {
+  Eigen::AlignedBox3f box;
+  for (const Index v : mesh.faces[f]) box.extend(mesh.positions[v]);
   return box;
 }
 
-bool overlap(const Box& a, const Box& b) {
-  return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
-}
-
-}  // namespace
-
 double penetration(const Mesh& mesh, Index f, Index g) {
-  if (f == g || !overlap(box_of(mesh, f), box_of(mesh, g))) return 0;
+  if (f == g || !face_box(mesh, f).intersects(face_box(mesh, g))) return 0;
   double sum = 0;
   for_each_triangle(mesh.faces[f], [&](const Corners& t) {
     for_each_triangle(mesh.faces[g],
@@ -122,13 +110,13 @@ std::vector<std::array<Index, 2>> find_crossings(const Mesh& mesh, const Context
   // The faces by the cells of a grid that their boxes touch. Two meet in the cell of the highest
   // of their low corners, and are compared there only.
   const auto count = static_cast<Index>(mesh.faces.size());
-  std::vector<Box> boxes(count);
+  std::vector<Eigen::AlignedBox3f> boxes(count);
   double size = 0;
   Vec3 lowest = Vec3::Constant(std::numeric_limits<float>::infinity());
   for (Index f = 0; f < count; ++f) {
-    boxes[f] = box_of(mesh, f);
-    lowest = lowest.cwiseMin(boxes[f].low);
-    size += (boxes[f].high - boxes[f].low).maxCoeff() / static_cast<double>(count);
+    boxes[f] = face_box(mesh, f);
+    lowest = lowest.cwiseMin(boxes[f].min());
+    size += boxes[f].sizes().maxCoeff() / static_cast<double>(count);
   }
   if (!(size > 0)) return {};
   const auto cell = [&](const Vec3& p, int axis) {
@@ -144,7 +132,7 @@ std::vector<std::array<Index, 2>> find_crossings(const Mesh& mesh, const Context
   };
   std::vector<Entry> entries;
   for (Index f = 0; f < count; ++f) {
-    const auto& [low, high] = boxes[f];
+    const Vec3 &low = boxes[f].min(), &high = boxes[f].max();
     for (auto x = cell(low, 0); x <= cell(high, 0); ++x) {
       for (auto y = cell(low, 1); y <= cell(high, 1); ++y) {
         for (auto z = cell(low, 2); z <= cell(high, 2); ++z) entries.push_back({key(x, y, z), f});
@@ -157,8 +145,8 @@ std::vector<std::array<Index, 2>> find_crossings(const Mesh& mesh, const Context
     const auto& [own, f] = entries[e];
     for (std::size_t o = e + 1; o < entries.size() && entries[o].cell == own; ++o) {
       const Index g = entries[o].face;
-      if (!overlap(boxes[f], boxes[g])) continue;
-      const Vec3 low = boxes[f].low.cwiseMax(boxes[g].low);
+      if (!boxes[f].intersects(boxes[g])) continue;
+      const Vec3 low = boxes[f].min().cwiseMax(boxes[g].min());
       if (key(cell(low, 0), cell(low, 1), cell(low, 2)) == own && penetration(mesh, f, g) > 0) {
         body(g);
       }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <vector>
 
@@ -7,6 +8,8 @@
 #include "meshgrain/mesh.h"
 
 namespace meshgrain {
+
+Eigen::AlignedBox3f face_box(const Mesh& mesh, Index f);
 
 /// How deep two faces pass through each other, in units of length: 0 if they do not, or share an
 /// edge. A quad counts with both of its diagonals.

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "mesh/border.h"
+#include "util/sort_unique.h"
 #include "util/triangle.h"
 
 namespace meshgrain {
@@ -160,8 +161,7 @@ Rails attach_to_lines(const Extraction& extraction, const Mesh& surface,
     }
   }
   const auto mean = static_cast<float>(length / static_cast<double>(edges.size()));
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  sort_unique(edges);
 
   // Clusters on the border have their nearest node there.
   for (Index v = 0; v < n; ++v) {

@@ -83,6 +83,19 @@ void LocalSearch::keep_apart(std::vector<Index> faces) {
   for (const Index f : rivals_) is_rival_[f] = 1;
 }
 
+Vec3 LocalSearch::mean_neighbor(Index v) const {
+  Vec3 sum = Vec3::Zero();
+  float count = 0;
+  for (const Index f : around_[v]) {
+    for (const Index w : std::as_const(mesh_.faces)[f]) {
+      if (w == v) continue;
+      sum += mesh_.positions[w];
+      ++count;
+    }
+  }
+  return sum / count;
+}
+
 void LocalSearch::put(Index v, const Place& place) {
   mesh_.positions[v] = place.position;
   placement_.set_seed(v, place.seed);
@@ -142,14 +155,10 @@ void LocalSearch::find_near(Index v, float distance) {
   near_.clear();
   if (rivals_.empty()) return;
   Eigen::AlignedBox3f box;
-  for (const Index f : around_[v]) {
-    for (const Index w : std::as_const(mesh_.faces)[f]) box.extend(mesh_.positions[w]);
-  }
+  for (const Index f : around_[v]) box.extend(face_box(mesh_, f));
   const Eigen::AlignedBox3f wide(box.min().array() - distance, box.max().array() + distance);
   for (const Index g : rivals_) {
-    Eigen::AlignedBox3f other;
-    for (const Index w : std::as_const(mesh_.faces)[g]) other.extend(mesh_.positions[w]);
-    if (wide.intersects(other)) near_.push_back(g);
+    if (wide.intersects(face_box(mesh_, g))) near_.push_back(g);
   }
 }
 
@@ -180,16 +189,7 @@ bool LocalSearch::improve(Index v) {
       best_seed = placement_.seed(v);
     }
   };
-  Vec3 center = Vec3::Zero();
-  float count = 0;
-  for (const Index f : around_[v]) {
-    for (const Index w : std::as_const(mesh_.faces)[f]) {
-      if (w == v) continue;
-      center += mesh_.positions[w];
-      ++count;
-    }
-  }
-  attempt(center / count);
+  attempt(mean_neighbor(v));
   constexpr int directions = 8;
   for (float step = 0.5f * length; step > 0.03f * length; step /= 2) {
     const Vec3 from = best;

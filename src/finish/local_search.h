@@ -29,6 +29,9 @@ class LocalSearch {
   /// Faces that, from now on, are also bad where they pass through each other.
   void keep_apart(std::vector<Index> faces);
 
+  /// The mean of the other corners of the faces around a vertex.
+  Vec3 mean_neighbor(Index v) const;
+
   /// Where a vertex is.
   struct Place {
     Vec3 position;

@@ -7,14 +7,10 @@
 #include <vector>
 
 #include "finish/crossings.h"
+#include "util/sort_unique.h"
 
 namespace meshgrain {
 namespace {
-
-void sort_unique(std::vector<Index>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
 
 class Mending {
  public:
@@ -101,10 +97,8 @@ class Mending {
   }
 
   std::size_t count_crossings(const Place& place) const {
-    std::vector<Eigen::AlignedBox3f> boxes(place.faces.size());
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-      for (const Index v : mesh_.faces[place.faces[i]]) boxes[i].extend(mesh_.positions[v]);
-    }
+    std::vector<Eigen::AlignedBox3f> boxes;
+    for (const Index f : place.faces) boxes.push_back(face_box(mesh_, f));
     std::size_t count = 0;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       for (std::size_t j = i + 1; j < boxes.size(); ++j) {
@@ -157,13 +151,12 @@ class Mending {
   /// Or is too fine to tell.
   bool surface_crosses(const Place& place) const {
     std::vector<Index> nodes;
-    Vec3 low = place.before[0].position, high = low;
+    Eigen::AlignedBox3f box;
     for (const LocalSearch::Place& at : place.before) {
       nodes.push_back(at.seed.on_line != no_index ? at.seed.on_line : at.seed.node);
-      low = low.cwiseMin(at.position);
-      high = high.cwiseMax(at.position);
+      box.extend(at.position);
     }
-    const auto piece = placement_.projector().cut_out(low, high, std::move(nodes), most_searched);
+    const auto piece = placement_.projector().cut_out(box, std::move(nodes), most_searched);
     return !piece || !find_crossings(*piece, context_).empty();
   }
 
@@ -192,16 +185,7 @@ class Mending {
       for (std::size_t k = 0; k < place.vertices.size(); ++k) {
         const Index v = place.vertices[k];
         const Vec3& start = place.before[k].position;
-        Vec3 sum = Vec3::Zero();
-        float count = 0;
-        for (const Index f : around_[v]) {
-          for (const Index w : mesh_.faces[f]) {
-            if (w == v) continue;
-            sum += mesh_.positions[w];
-            ++count;
-          }
-        }
-        const Vec3 moved = 0.5f * (mesh_.positions[v] + sum / count) - start;
+        const Vec3 moved = 0.5f * (mesh_.positions[v] + search_.mean_neighbor(v)) - start;
         next.push_back(start + moved * std::min(1.0f, farthest / std::max(moved.norm(), 1e-30f)));
       }
       for (std::size_t k = 0; k < place.vertices.size(); ++k) {

@@ -51,7 +51,7 @@ Vec3 Projector::normal(Index vertex) const {
   return length > 0 ? Vec3(sum / length) : Vec3(Vec3::Zero());
 }
 
-std::optional<Mesh> Projector::cut_out(const Vec3& low, const Vec3& high, std::vector<Index> from,
+std::optional<Mesh> Projector::cut_out(const Eigen::AlignedBox3f& box, std::vector<Index> from,
                                        std::size_t most) const {
   Mesh piece;
   if (surface_.is_point_cloud()) return piece;
@@ -63,9 +63,7 @@ std::optional<Mesh> Projector::cut_out(const Vec3& low, const Vec3& high, std::v
     for (const Index f : around_[v]) {
       faces.insert(f);
       for (const Index w : surface_.faces[f]) {
-        const Vec3& p = surface_.positions[w];
-        const bool inside = (p.array() >= low.array()).all() && (p.array() <= high.array()).all();
-        if (inside && seen.insert(w).second) from.push_back(w);
+        if (box.contains(surface_.positions[w]) && seen.insert(w).second) from.push_back(w);
       }
     }
   }

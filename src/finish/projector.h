@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <optional>
 #include <vector>
 
@@ -25,7 +26,7 @@ class Projector {
 
   /// The faces in and across a box that hang together there with one of the vertices `from`, if
   /// there are no more than `most`; none of a point cloud.
-  std::optional<Mesh> cut_out(const Vec3& low, const Vec3& high, std::vector<Index> from,
+  std::optional<Mesh> cut_out(const Eigen::AlignedBox3f& box, std::vector<Index> from,
                               std::size_t most) const;
 
  private:

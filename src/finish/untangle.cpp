@@ -1,8 +1,8 @@
 #include "finish/untangle.h"
 
-#include <algorithm>
-#include <utility>
 #include <vector>
+
+#include "util/sort_unique.h"
 
 namespace meshgrain {
 namespace {
@@ -38,8 +38,7 @@ class Untangling {
           }
         }
       }
-      std::sort(vertices.begin(), vertices.end());
-      vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+      sort_unique(vertices);
       if (!search_.improve(vertices, 1, context_)) return;
     }
   }

@@ -63,12 +63,12 @@ double Target::count_ratio(const Mesh& mesh) const {
 }
 
 std::size_t Target::faces_to_close(const Mesh& mesh, double tolerance) const {
-  // What each of them takes away.
-  const double faces = kind_ == OutputFaces::quads ? 4 : kind_ == OutputFaces::triangles ? 2 : 1;
+  // Each of them takes away one cell: its faces, and its vertices.
   const double vertices = kind_ == OutputFaces::quads ? 4 : 1;
   const double excess = count_ratio(mesh) - 1 - tolerance;
   return static_cast<std::size_t>(std::max(
-      0.0, std::ceil(faces_ > 0 ? excess * faces_ / faces : excess * vertices_ / vertices)));
+      0.0,
+      std::ceil(faces_ > 0 ? excess * faces_ / faces_per_cell_ : excess * vertices_ / vertices)));
 }
 
 }  // namespace meshgrain
