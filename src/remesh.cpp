@@ -132,9 +132,20 @@ class Pipeline {
     const EdgeLength relative =
         relative_edge_lengths(graph(), sizing, surface_.values, mean_length_, context_);
     lengths_ = target_.edge_lengths(graph(), relative);
-    if (options_.align_border && !is_cloud_ && nodes_are_vertices_) {
-      border_ = border_constraints(surface_);
-    }
+  }
+
+  void find_lines() {
+    if (is_cloud_ || !nodes_are_vertices_) return;
+    stage_("features", [&] {
+      FeatureOptions options = options_.features;
+      if (options_.orientation_energy != OrientationEnergy::extrinsic) options.orient_creases = 1;
+      // Triangles cannot follow two creases that meet at right angles.
+      if (posy_of(options_.faces) == 6) options.align_creases = 0.3f;
+      const bool halved = options_.faces == OutputFaces::quads;
+      features_ =
+          find_features(surface_, options, halved ? mean_length_ / 2 : mean_length_, context_);
+      constraints_ = feature_constraints(features_);
+    });
   }
 
   void orient() {
@@ -149,7 +160,8 @@ class Pipeline {
       orientation.energy = options_.orientation_energy;
       auto constraints = curvature_constraints(graph(), static_cast<float>(mean_length_),
                                                options_.curvature, context_);
-      constraints.insert(constraints.end(), border_.orientation.begin(), border_.orientation.end());
+      constraints.insert(constraints.end(), constraints_.orientation.begin(),
+                         constraints_.orientation.end());
       const auto solver = OrientationSolver::create(hierarchy_, orientation, constraints);
       while (solver->step(context_)) context_.progress("orientation field", solver->progress());
       fields().orientation = solver->field();
@@ -222,14 +234,15 @@ class Pipeline {
       if (options_.faces == OutputFaces::quads) {
         smoothing.evenness = 0.59 + 0.12 * options_.regularity;
       }
-      if (options_.faces == OutputFaces::triangles) smoothing.evenness = 0.75;
-      if (options_.faces == OutputFaces::quad_dominant) smoothing.evenness = 0.46;
+      if (options_.faces == OutputFaces::triangles) smoothing.evenness = 0.87;
+      if (options_.faces == OutputFaces::quad_dominant) smoothing.evenness = 0.48;
       const EdgeLength& lengths = fields().position.edge_length;
       if (!lengths.uniform() && nodes_are_vertices_) {
         std::vector<float> sizes;
         for (const Index node : extraction_.nodes) sizes.push_back(lengths[node]);
         smoothing.relative_size = EdgeLength(std::move(sizes));
       }
+      if (!is_cloud_ && nodes_are_vertices_) smoothing.features = &features_;
       smooth(extraction_, surface_, graph(), smoothing, context_);
     });
   }
@@ -267,7 +280,7 @@ class Pipeline {
     position.posy = posy_of(options_.faces);
     position.energy = options_.position_energy;
     const auto solver = PositionSolver::create(hierarchy_, fields().orientation, lengths_, position,
-                                               border_.position);
+                                               constraints_.position);
     while (solver->step(context_)) context_.progress("position field", solver->progress());
     result_.report.position_energies = solver->energies();
     return solver->field();
@@ -278,7 +291,7 @@ class Pipeline {
   double cancelling_cost() const {
     if (options_.regularity >= 1) return std::numeric_limits<double>::infinity();
     const double least = options_.faces == OutputFaces::quads           ? 2.5
-                         : options_.faces == OutputFaces::quad_dominant ? 5
+                         : options_.faces == OutputFaces::quad_dominant ? 5.4
                                                                         : 6;
     return least * (1 + 2 * options_.regularity / (1 - options_.regularity));
   }
@@ -292,6 +305,7 @@ class Pipeline {
       extract.largest_filled_gap = 12;  // a larger one may well be a hole
     } else if (nodes_are_vertices_) {
       extract.surface = &surface_;
+      extract.features = &features_;
     } else {
       extract.border = border_of_faces(surface_, graph());
     }
@@ -315,7 +329,8 @@ class Pipeline {
   Hierarchy hierarchy_;
   double mean_length_ = 0;
   EdgeLength lengths_;
-  BorderConstraints border_;
+  FeatureLines features_;
+  FeatureConstraints constraints_;
   Extraction extraction_;
 };
 
@@ -328,6 +343,7 @@ RemeshResult remesh(Mesh input, const RemeshOptions& options, const Context& con
   pipeline.refine();
   pipeline.build_levels();
   pipeline.size_faces();
+  pipeline.find_lines();
   pipeline.orient();
   pipeline.position_and_extract();
   pipeline.count_singularities();

@@ -224,11 +224,13 @@ TEST_F(Cli, SolverOptionsChangeTheResult) {
   for (const char* options :
        {"--solver random", "--solver jacobi", "--sweeps 2", "--single-level", "-i", "--intrinsic",
         "--energy intrinsic", "--orientation-energy intrinsic", "--orientation-energy convex",
-        "--graph faces", "--weights geometric", "-S 0", "--smooth 3", "-c 20", "--crease 30",
-        "--curvature 0.5", "--curvature-hard 10"}) {
+        "--graph faces", "--weights geometric", "-S 0", "--smooth 3", "-c off", "--crease 100",
+        "--crease-normals 30", "--curvature 0.5", "--curvature-hard 10"}) {
     EXPECT_NE(bytes(std::string("-f 500 ") + options), plain) << options;
   }
   EXPECT_EQ(bytes("-f 500 -i"), bytes("-f 500 --energy intrinsic"));
+  EXPECT_EQ(bytes("-f 500 -c auto"), plain);
+  EXPECT_EQ(bytes("-f 500 -c 40"), plain);
 }
 
 TEST_F(Cli, BoundariesAreFollowed) {
@@ -396,6 +398,8 @@ TEST_F(Cli, WrongUsageIsRefused) {
   refused("-s nan", "--scale");
   refused("-s inf", "--scale");
   refused("-c nan", "--crease");
+  refused("-c 181", "--crease");
+  refused("-c sharp", "auto, off");
   refused("-p 5", "--posy");
   refused("-r 3", "--rosy");
   refused("-r 6", "-p 6");

@@ -24,7 +24,7 @@ TEST(Extract, APlateComesBackAsItsGrid) {
     RemeshOptions options;
     options.faces = OutputFaces::quad_dominant;
     options.edge_length = 1.0 / cells;
-    options.align_border = true;
+    options.features.align_border = true;
     const Mesh mesh = remesh(sample_shape("plate"), options).mesh;
     const MeshStatistics s = mesh_statistics(mesh);
     const auto n = static_cast<std::size_t>(cells);
@@ -50,7 +50,7 @@ TEST(Extract, APlateComesBackAsItsGrid) {
 TEST(Extract, PureQuadsOfAPlateAreItsGridToo) {
   RemeshOptions options;
   options.edge_length = 0.05;
-  options.align_border = true;
+  options.features.align_border = true;
   const MeshStatistics s = mesh_statistics(remesh(sample_shape("plate"), options).mesh);
   EXPECT_EQ(s.quads, 400u);
   EXPECT_EQ(s.faces, 400u);
@@ -236,7 +236,7 @@ TEST(TakeDual, LeavesTheBorderOut) {
 
 TEST(MakeManifold, LeavesManifoldMeshesAlone) {
   Mesh mesh = sample_shape("bracket", 0.3);
-  Extraction e{mesh, std::vector<Index>(mesh.positions.size(), 0)};
+  Extraction e{mesh, std::vector<Index>(mesh.positions.size(), 0), {}, {}};
   EXPECT_EQ(make_manifold(e), 0u);
   EXPECT_EQ(e.mesh.positions, mesh.positions);
   EXPECT_TRUE(std::ranges::equal(e.mesh.faces.corners(), mesh.faces.corners()));

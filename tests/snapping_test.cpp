@@ -113,6 +113,8 @@ TEST(Snapping, ExtrinsicEdgesLieOnTheCreases) {
     options.faces = OutputFaces::quad_dominant;
     options.edge_length = 3.3 * edge_lengths(mesh).mean;
     options.regularity = 0;  // as close to the fields as it gets
+    options.features.creases = meshgrain::Creases::none;
+    options.smoothing = 0;
     options.orientation_energy = orientation;
     options.position_energy = position;
     const Mesh result = remesh(mesh, options).mesh;

@@ -76,6 +76,22 @@ std::string refuse_unless_finite(const std::string& text) {
   return finite ? "" : "\"" + text + "\" is not a number";
 }
 
+/// "auto", "off" or degrees.
+void parse_creases(const std::string& text, FeatureOptions& features) {
+  if (text == "auto") {
+    features.creases = Creases::automatic;
+  } else if (text == "off") {
+    features.creases = Creases::none;
+  } else {
+    double& degrees = features.crease_degrees;
+    if (!CLI::detail::lexical_cast(text, degrees) || !(degrees >= 0 && degrees <= 180)) {
+      throw CLI::ValidationError("--crease",
+                                 "\"" + text + "\" is none of auto, off, degrees from 0 to 180");
+    }
+    features.creases = Creases::by_angle;
+  }
+}
+
 constexpr const char* description =
     "Meshgrain turns a mesh or point cloud into a mesh of well-shaped quads, triangles or "
     "hexagons\n"
@@ -153,12 +169,13 @@ void add_options(CLI::App& app, Arguments& a) {
   faces(app.add_flag("--manifold", o.manifold, "drop faces where the result is not manifold"));
 
   const auto follow = [&](CLI::Option* option) { option->group("What to follow"); };
-  follow(app.add_option("-c,--crease", o.graph.crease_degrees,
-                        "edges with a larger angle between their faces are creases (off)")
-             ->check(refuse_unless_finite)
-             ->check(CLI::Range(0.0, 180.0))
-             ->type_name("DEGREES"));
-  follow(app.add_flag("-b,--boundaries,!--free-boundaries", o.align_border,
+  follow(
+      app.add_option_function<std::string>(
+             "-c,--crease", [&o](const std::string& text) { parse_creases(text, o.features); },
+             "creases: auto (of mechanical parts, default), off, or where the angle between faces "
+             "is larger than this")
+          ->type_name("DEGREES"));
+  follow(app.add_flag("-b,--boundaries,!--free-boundaries", o.features.align_border,
                       "follow the border of an open mesh (yes)"));
   follow(app.add_option("--curvature", o.curvature.strength,
                         "pull towards the directions of curvature: 0 (off) to 1")
@@ -193,6 +210,11 @@ void add_options(CLI::App& app, Arguments& a) {
                     "fields live on the input's vertices (default) or faces"));
   method(add_choice(app, "--weights", o.graph.weights, graph_weights, "WEIGHTS",
                     "of the graph's edges: uniform (default) or geometric"));
+  method(app.add_option("--crease-normals", o.graph.crease_degrees,
+                        "where faces meet at a larger angle, vertices have the normal of one (off)")
+             ->check(refuse_unless_finite)
+             ->check(CLI::Range(0.0, 180.0))
+             ->type_name("DEGREES"));
   method(app.add_option("-k,--knn", o.graph.neighbors, "neighbours of each point of a cloud (10)")
              ->check(CLI::Range(3, 1000))
              ->type_name("N"));

@@ -47,6 +47,11 @@ Json to_json(const MeshStatistics& s) {
           {"euler", s.euler}};
 }
 
+Json creases(const FeatureOptions& features) {
+  if (features.creases == Creases::by_angle) return features.crease_degrees;
+  return features.creases == Creases::automatic ? "auto" : "off";
+}
+
 Json to_json(const SurfaceDistance& distance) {
   return {{"mean", distance.mean}, {"max", distance.max}};
 }
@@ -86,14 +91,15 @@ Json to_json(const RemeshOptions& o) {
                {"graph", o.graph.nodes == GraphNodes::faces ? "faces" : "vertices"},
                {"weights", o.graph.weights == GraphWeights::geometric ? "geometric" : "uniform"},
                {"knn", o.graph.neighbors},
-               {"crease", o.graph.crease_degrees},
+               {"crease_normals", o.graph.crease_degrees},
+               {"crease", creases(o.features)},
                {"orientation_energy", energies[static_cast<int>(o.orientation_energy)]},
                {"position_energy", energies[static_cast<int>(o.position_energy)]},
                {"solver", schedules[static_cast<int>(o.solver.schedule)]},
                {"sweeps", o.solver.sweeps},
                {"multiresolution", o.solver.multiresolution},
                {"seed", o.solver.seed},
-               {"boundaries", o.align_border},
+               {"boundaries", o.features.align_border},
                {"curvature", o.curvature.strength},
                {"curvature_hard", o.curvature.hard_degrees},
                {"smooth", o.smoothing},

@@ -2,17 +2,18 @@
 
 #include <vector>
 
+#include "meshgrain/features.h"
 #include "meshgrain/fields.h"
 
 namespace meshgrain {
 
-/// Constraints that align both fields with the border of a triangle mesh (section 3.7): for the
-/// vertices of border edges, the direction of the edge, and its line for positions.
-struct BorderConstraints {
+/// Constraints that align both fields with feature lines (section 3.7): for the vertices of each
+/// line, its direction there, and the line itself for positions; corners get a lattice point.
+struct FeatureConstraints {
   std::vector<OrientationConstraint> orientation;
   std::vector<PositionConstraint> position;
 };
-BorderConstraints border_constraints(const Mesh& triangles);
+FeatureConstraints feature_constraints(const FeatureLines& lines);
 
 struct CurvatureAlignment {
   /// Pull towards the principal directions at every node where they differ, 0 (none) to 1: the soft

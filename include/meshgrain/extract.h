@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "meshgrain/context.h"
+#include "meshgrain/features.h"
 #include "meshgrain/fields.h"
 
 namespace meshgrain {
@@ -15,6 +16,9 @@ struct ExtractOptions {
   /// then collapsed, and the output has its components, borders and genus. Without it the paper's
   /// way is taken, which needs nothing but the graph; the options below are for that.
   const Mesh* surface = nullptr;
+  /// Over a mesh: the lines of `surface` that become chains of edges, whatever the fields are; if
+  /// there are none given, those of its border.
+  const FeatureLines* features = nullptr;
   /// Over a mesh: leave the pieces apart that non-manifold edges and vertices of `surface` join.
   bool manifold = false;
   /// Over a mesh: how much shape may be given up for each irregular vertex that goes away, as a sum
@@ -29,9 +33,16 @@ struct ExtractOptions {
   std::size_t largest_filled_gap = 64;
 };
 
+/// An edge of a mesh that follows a feature line.
+struct LineEdge {
+  Index a, b, line;
+};
+
 struct Extraction {
   Mesh mesh;
   std::vector<Index> nodes;  ///< For each vertex, the node of its cluster that lies nearest to it.
+  std::vector<LineEdge> line_edges;
+  std::vector<Index> corners;  ///< Vertices at corners of the lines, whose nodes these are.
 };
 
 /// Reads a mesh off the integer jumps of a position field (section 3.8): quads with some triangles

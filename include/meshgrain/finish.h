@@ -2,6 +2,7 @@
 
 #include "meshgrain/context.h"
 #include "meshgrain/extract.h"
+#include "meshgrain/features.h"
 #include "meshgrain/graph.h"
 #include "meshgrain/mesh.h"
 
@@ -25,19 +26,18 @@ struct SmoothOptions {
   /// How strongly faces are drawn to one size, 0 to 1: areas become more even, angles a little
   /// less.
   double evenness = 0.65;
-  /// Chains of edges that lie on creases of a mechanical part sharper than this stay on them; < 0:
-  /// none do.
-  double crease_degrees = 40;
+  /// The lines that Extraction::line_edges follow; without any, those of the surface's border.
+  const FeatureLines* features = nullptr;
   EdgeLength relative_size{1.0f};  ///< Relative to each other: one, or one a vertex.
 };
 
 /// Evens the faces out: each iteration moves every vertex to the mean of where it would be in the
-/// regular polygons that fit its faces best, and back onto the surface. Border vertices move along
-/// the border, those on creases along the crease, and the ones at corners stay. Where a finger or
-/// horn of the surface would be left bare by more than an edge length, a vertex is held out there.
-/// At the end single faces that are turned over, nearly degenerate, or pass through others are
-/// mended, however many iterations there were (unless none). `surface` is the triangle mesh or
-/// point cloud that `graph` was built on.
+/// regular polygons that fit its faces best, and back onto the surface. Vertices on feature lines
+/// move along these, and the ones at corners stay. Where a finger or horn of the surface would be
+/// left bare by more than an edge length, a vertex is held out there. At the end single faces that
+/// are turned over, nearly degenerate, or pass through others are mended, however many iterations
+/// there were (unless none). `surface` is the triangle mesh or point cloud that `graph` was built
+/// on.
 void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
             const SmoothOptions& options = {}, const Context& context = Context());
 

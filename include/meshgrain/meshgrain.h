@@ -8,6 +8,7 @@
 #include "meshgrain/curvature.h"
 #include "meshgrain/error.h"
 #include "meshgrain/extract.h"
+#include "meshgrain/features.h"
 #include "meshgrain/fields.h"
 #include "meshgrain/fields_file.h"
 #include "meshgrain/finish.h"

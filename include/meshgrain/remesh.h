@@ -7,6 +7,7 @@
 
 #include "meshgrain/alignment.h"
 #include "meshgrain/context.h"
+#include "meshgrain/features.h"
 #include "meshgrain/fields.h"
 #include "meshgrain/graph.h"
 #include "meshgrain/mesh.h"
@@ -36,7 +37,7 @@ struct RemeshOptions {
   SolverOptions solver;
   OrientationEnergy orientation_energy = OrientationEnergy::extrinsic;
   PositionEnergy position_energy = PositionEnergy::extrinsic;
-  bool align_border = true;  ///< Of meshes.
+  FeatureOptions features;  ///< Of meshes: lines that edges follow.
   /// From 0, the best shapes, to 1, the fewest irregular vertices: hardly more than the orientation
   /// field has singularities.
   double regularity = 0.5;

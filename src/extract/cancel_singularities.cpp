@@ -17,6 +17,7 @@ class Cancelling {
       : lattice_(lattice), map_(lattice.map), limit_(cost), posy_(lattice.posy) {
     const std::size_t states = map_.halfedges() * static_cast<std::size_t>(posy_);
     visits_.resize(states);
+    weigh_lines();
   }
 
   void run() {
@@ -77,6 +78,19 @@ class Cancelling {
   static constexpr std::size_t none = ~std::size_t{0};
   static constexpr double least_step = 0.05;  // so that paths are no longer than they must be
 
+  /// What changes the length of a feature line must fit in between its ends: it costs more on a
+  /// short one.
+  void weigh_lines() {
+    std::vector<int> edges;  // of each line
+    for (Index h = 0; h < map_.halfedges(); h += 2) {
+      if (map_.removed(h) || !lattice_.on_feature(h)) continue;
+      const Index line = lattice_.lines[h / 2];
+      if (line >= edges.size()) edges.resize(line + 1, 0);
+      ++edges[line];
+    }
+    for (const int count : edges) line_weight_.push_back(std::max(1.0, 40.0 / std::max(count, 1)));
+  }
+
   static bool is_singular(const LatticeTriangle& triangle) {
     return !triangle.is_cone() && !triangle.is_plane();
   }
@@ -113,7 +127,8 @@ class Cancelling {
   double step_cost(Index h, int steps, double worse) const {
     const double farther =
         lattice_.misfit(h, left(h, steps).t) - lattice_.misfit(h, lattice_.jump(h).t);
-    return std::max(farther, least_step) + std::max(worse, 0.0);
+    const double weight = lattice_.on_feature(h) ? line_weight_[lattice_.lines[h / 2]] : 1;
+    return weight * std::max(farther, least_step) + std::max(worse, 0.0);
   }
 
   /// How much worse the triangle left of g gets when something enters by g and leaves by h.
@@ -160,8 +175,9 @@ class Cancelling {
       Index h = start;
       for (int side = 0; side < 3; ++side) {
         const double cost = step_cost(h, carried, leaving(h, carried));
+        const bool may = may_carry(h, carried);
         carried = beyond(h, carried);
-        visit(cost, {PolygonMap::twin(h), carried}, none);
+        if (may) visit(cost, {PolygonMap::twin(h), carried}, none);
         h = map_.next(h);
       }
     }
@@ -202,7 +218,7 @@ class Cancelling {
   /// How many irregular vertices vanish if a path ends here; nothing if it only passes, less than 0
   /// if it can do neither.
   std::optional<double> gain(const State& in, Index start) const {
-    if (lattice_.holes[in.h]) return keeps_to_border(PolygonMap::twin(in.h), in) ? 0 : -1;
+    if (lattice_.holes[in.h]) return 0;
     if (in.h == start || map_.next(in.h) == start || map_.prev(in.h) == start) return -1;
     const Jump sum = lattice_.sum(in.h);
     if (sum.rotation != 0) return 0;
@@ -215,14 +231,11 @@ class Cancelling {
     return after == 0 ? 2 : 1;
   }
 
-  /// Whether an edge of the border that runs along an axis of the lattice still does when what
-  /// comes in by the hole beside it has gone out through it.
-  bool keeps_to_border(Index h, const State& out) const {
-    if (posy_ != 4) return true;
-    const auto before = lattice_.jump(h).t;
-    const int carried = (out.unit + posy_ - lattice_.jump(h).rotation) % posy_;
-    const auto after = left(h, carried).t;
-    return (before[0] != 0 || after[0] == 0) && (before[1] != 0 || after[1] == 0);
+  /// Lines of features stay on their axis, and keep their vertices apart.
+  bool may_carry(Index h, int carried) const {
+    if (!lattice_.on_feature(h)) return true;
+    const Jump after = left(h, carried);
+    return !after.is_zero() && !lattice_.leaves_axis(h, after.t);
   }
 
   void pass_on(const State& in, const Entry& entry) {
@@ -230,8 +243,9 @@ class Cancelling {
     Index h = map_.next(in.h);
     for (int side = 0; side < 2; ++side) {
       const double cost = entry.cost + step_cost(h, carried, passing(in, h, carried));
+      const bool may = may_carry(h, carried);
       carried = beyond(h, carried);
-      visit(cost, {PolygonMap::twin(h), carried}, entry.state);
+      if (may) visit(cost, {PolygonMap::twin(h), carried}, entry.state);
       h = map_.next(h);
     }
   }
@@ -241,6 +255,7 @@ class Cancelling {
   double limit_;
   int posy_;
   std::vector<Visit> visits_;
+  std::vector<double> line_weight_;
   std::priority_queue<Entry> queue_;
   std::uint32_t search_ = 0;
 };

@@ -142,11 +142,13 @@ void sort_unique(std::vector<std::array<Index, 2>>& edges) {
 
 Clusters average_clusters(const Graph& graph, const PositionField& position,
                           std::span<const Index> nodes, std::span<const Index> cluster_of,
-                          std::span<const std::uint8_t> border, std::size_t count) {
+                          std::span<const std::uint8_t> border, std::span<const std::uint8_t> hold,
+                          std::size_t count) {
   Clusters result;
   result.positions.assign(count, Vec3::Zero());
   result.normals.assign(count, Vec3::Zero());
   result.on_border.assign(count, 0);
+  result.hold.assign(count, 0);
   result.cover.assign(count, 0);
   std::vector<float> weight(count, 0);
   for (std::size_t m = 0; m < nodes.size(); ++m) {
@@ -161,6 +163,7 @@ Clusters average_clusters(const Graph& graph, const PositionField& position,
     result.normals[c] += alpha * graph.normals[i];
     weight[c] += alpha;
     result.on_border[c] |= border[m];
+    result.hold[c] = std::max(result.hold[c], hold[m]);
     const float rho = position.edge_length[i];
     result.cover[c] += graph.areas[i] / (rho * rho);
   }
@@ -178,7 +181,7 @@ Clusters average_clusters(const Graph& graph, const PositionField& position,
   std::vector<float> nearest(count, 0);
   for (std::size_t m = 0; m < nodes.size(); ++m) {
     const Index c = cluster_of[m], i = nodes[m];
-    if (c == no_index || (result.on_border[c] && !border[m])) continue;
+    if (c == no_index || hold[m] < result.hold[c]) continue;
     const float distance = (graph.positions[i] - result.positions[c]).squaredNorm();
     if (result.nodes[c] == no_index || distance < nearest[c]) {
       nearest[c] = distance;
@@ -228,7 +231,8 @@ Clusters collapse_clusters(const Graph& graph, const OrientationField& orientati
   for (const auto& [i, j] : options.border) border[i] = border[j] = 1;
   std::vector<Index> nodes(n);
   std::iota(nodes.begin(), nodes.end(), Index{0});
-  Clusters result = average_clusters(graph, position, nodes, cluster_of, border, kept_count);
+  Clusters result =
+      average_clusters(graph, position, nodes, cluster_of, border, border, kept_count);
 
   const auto clusters_of_edge = [&](Index i, Index j) {
     const Index a = cluster_of[i], b = cluster_of[j];

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "features/feature_edges.h"
 #include "meshgrain/extract.h"
 
 namespace meshgrain {
@@ -17,14 +18,16 @@ struct Clusters {
   std::vector<std::array<Index, 2>> edges;  // sorted, first < second
   std::vector<std::array<Index, 2>> border;  // those of the edges that lie on the border, sorted
   std::vector<std::uint8_t> on_border;       // whether a cluster has nodes on the border
+  std::vector<std::uint8_t> hold;            // the most that one of its nodes is held (Hold)
 };
 
 /// Positions, normals and nearest nodes of `count` clusters (section 3.8). Member m is node
-/// `nodes[m]` and belongs to cluster `cluster_of[m]` (or to none: no_index). Where a cluster has
-/// members for which `border` is set, its nearest node is one of those.
+/// `nodes[m]` and belongs to cluster `cluster_of[m]` (or to none: no_index). The nearest node of a
+/// cluster is one of those that are held most.
 Clusters average_clusters(const Graph& graph, const PositionField& position,
                           std::span<const Index> nodes, std::span<const Index> cluster_of,
-                          std::span<const std::uint8_t> border, std::size_t count);
+                          std::span<const std::uint8_t> border, std::span<const std::uint8_t> hold,
+                          std::size_t count);
 
 /// The graph way, for point clouds and everything else: no mesh is needed.
 Clusters collapse_clusters(const Graph& graph, const OrientationField& orientation,

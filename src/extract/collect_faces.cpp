@@ -32,6 +32,16 @@ Extraction collect_faces(const PolygonMap& map, const FaceRepair& repair, const 
     }
     result.mesh.faces.push_back(face);
   }
+  for (Index h = 0; h < map.halfedges(); h += 2) {
+    if (map.removed(h) || repair.line(h) == no_index) continue;
+    const Index a = vertex[map.origin(h)], b = vertex[map.target(h)];
+    if (a != no_index && b != no_index) result.line_edges.push_back({a, b, repair.line(h)});
+  }
+  for (std::size_t c = 0; c < vertex.size(); ++c) {
+    if (vertex[c] != no_index && clusters.hold[c] == at_corner) {
+      result.corners.push_back(vertex[c]);
+    }
+  }
   return result;
 }
 

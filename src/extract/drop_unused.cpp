@@ -21,6 +21,11 @@ void drop_unused(Extraction& extraction) {
   if (!mesh.normals.empty()) mesh.normals.resize(count);
   extraction.nodes.resize(count);
   for (Index& v : mesh.faces.corners()) v = rank[v];
+  for (LineEdge& edge : extraction.line_edges) edge = {rank[edge.a], rank[edge.b], edge.line};
+  std::erase_if(extraction.line_edges,
+                [](const LineEdge& e) { return e.a == no_index || e.b == no_index; });
+  for (Index& v : extraction.corners) v = rank[v];
+  std::erase(extraction.corners, no_index);
 }
 
 }  // namespace meshgrain

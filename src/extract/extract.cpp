@@ -82,7 +82,9 @@ Extraction extract_from_graph(const Graph& graph, const OrientationField& orient
                               const Context& context) {
   Clusters clusters = collapse_clusters(graph, orientation, position, options, context);
   PolygonMap map(clusters.positions, clusters.normals, clusters.edges);
-  FaceRepair repair(map, clusters, position.posy, std::vector<std::uint8_t>(map.halfedges(), 0));
+  clusters.hold.assign(clusters.positions.size(), free_vertex);
+  FaceRepair repair(map, clusters, position.posy, std::vector<std::uint8_t>(map.halfedges(), 0),
+                    std::vector<Index>(map.halfedges() / 2, no_index));
   repair.remove_dangling();
   repair.cut_pinches();
   repair.find_holes(mark(clusters.edges, clusters.border), clusters.on_border,
@@ -139,6 +141,10 @@ void join_pieces(Extraction& extraction, std::vector<CollapsedMesh::Meeting> mee
     mesh.positions[root] = sum / static_cast<float>(list.size());
   }
   for (Index& v : mesh.faces.corners()) v = sets.find(v);
+  for (LineEdge& edge : extraction.line_edges) {
+    edge = {sets.find(edge.a), sets.find(edge.b), edge.line};
+  }
+  for (Index& v : extraction.corners) v = sets.find(v);
   drop_unused(extraction);
 }
 
@@ -146,15 +152,23 @@ void join_pieces(Extraction& extraction, std::vector<CollapsedMesh::Meeting> mee
 Extraction extract_from_mesh(const Graph& graph, const OrientationField& orientation,
                              const PositionField& position, const ExtractOptions& options,
                              const Context& context) {
-  CollapsedMesh collapsed =
-      collapse_mesh(*options.surface, graph, orientation, position, options.energy, context);
+  FeatureLines border;
+  if (options.features == nullptr) {
+    border = find_features(*options.surface, {.creases = Creases::none, .align_border = false},
+                           position.edge_length[0], context);
+  }
+  const FeatureLines& features = options.features != nullptr ? *options.features : border;
+  CollapsedMesh collapsed = collapse_mesh(*options.surface, features, graph, orientation, position,
+                                          options.energy, context);
   LatticeMesh lattice(std::move(collapsed.lattice), std::move(collapsed.clusters), collapsed.roots,
                       graph, orientation, position);
   repair_lattice(lattice);
   cancel_position_singularities(lattice, options.cancelling_cost);
   repair_lattice(lattice);
-  FaceRepair repair(lattice.map, lattice.clusters, position.posy, std::move(lattice.holes));
+  FaceRepair repair(lattice.map, lattice.clusters, position.posy, std::move(lattice.holes),
+                    std::move(lattice.lines));
   if (position.posy == 4) repair.remove_diagonals(lattice.jumps);
+  repair.part_straight_angles();
   make_regular(repair, position.posy);
   std::vector<Index> vertex;
   Extraction result = collect_faces(lattice.map, repair, lattice.clusters, vertex);

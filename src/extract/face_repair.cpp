@@ -11,8 +11,20 @@ namespace meshgrain {
 using std::numbers::pi;
 
 FaceRepair::FaceRepair(PolygonMap& map, Clusters& clusters, int posy,
-                       std::vector<std::uint8_t> holes)
-    : map_(map), clusters_(clusters), posy_(posy), hole_(std::move(holes)) {}
+                       std::vector<std::uint8_t> holes, std::vector<Index> lines)
+    : map_(map),
+      clusters_(clusters),
+      posy_(posy),
+      hole_(std::move(holes)),
+      lines_(std::move(lines)) {}
+
+/// As PolygonMap::add_edge(), for an edge inside of a face.
+Index FaceRepair::add_edge(Index a, Index b) {
+  const Index added = map_.add_edge(a, b);
+  hole_.resize(map_.halfedges(), 0);
+  lines_.resize(map_.halfedges() / 2, no_index);
+  return added;
+}
 
 /// The angle at v from one neighbour counterclockwise to another, in the tangent plane: 0 to 2 pi.
 double FaceRepair::angle(Index v, Index from, Index to) const {
@@ -35,6 +47,67 @@ bool FaceRepair::same_orbit(Index a, Index b) const {
     h = map_.next(h);
   } while (h != a);
   return false;
+}
+
+/// The sum of the normals of the triangles of a fan, twice as long as the area.
+Vec3 FaceRepair::face_normal(Index h) const {
+  const Vec3& first = clusters_.positions[map_.origin(h)];
+  Vec3 sum = Vec3::Zero();
+  for (Index g = map_.next(h); map_.next(g) != h; g = map_.next(g)) {
+    sum += (clusters_.positions[map_.origin(g)] - first)
+               .cross(clusters_.positions[map_.target(g)] - first);
+  }
+  return sum;
+}
+
+bool FaceRepair::is_straight(Index to, Index from, const Vec3& normal) const {
+  if (line(to) == no_index || line(from) == no_index) return false;
+  const Index v = map_.origin(to);
+  if (clusters_.hold[v] != at_corner) return true;
+  const Vec3 a = clusters_.positions[map_.target(to)] - clusters_.positions[v];
+  const Vec3 b = clusters_.positions[map_.origin(from)] - clusters_.positions[v];
+  constexpr float straight = -0.6f;
+  return normal.dot(a.cross(b)) < 0 || a.dot(b) < straight * a.norm() * b.norm();
+}
+
+bool FaceRepair::is_last_rung(Index h) const {
+  const Index t = PolygonMap::twin(h);
+  return is_straight(map_.next(t), map_.prev(h), face_normal(h) + face_normal(t));
+}
+
+void FaceRepair::part_straight_angles() {
+  for (Index h = 0; h < map_.halfedges(); ++h) {
+    if (map_.removed(h) || hole_[h]) continue;
+    if (!is_straight(h, map_.prev(h), face_normal(h))) continue;
+    // A triangle needs room first.
+    const Index across = map_.next(h), beyond = PolygonMap::twin(across);
+    if (map_.degree(h) == 3) {
+      const bool fixed = hole_[beyond] || line(across) != no_index || is_last_rung(across) ||
+                         is_last_rung(beyond) || map_.valence(map_.origin(across)) <= 3 ||
+                         map_.valence(map_.target(across)) <= 3 || touches_itself(across);
+      if (fixed) continue;
+      map_.remove_edge(across);
+    }
+    // To where the two parts are best.
+    std::vector<Index> orbit, corners;
+    map_.orbit(h, orbit);
+    double least = std::numeric_limits<double>::infinity();
+    Index best = no_index;
+    const std::size_t n = orbit.size();
+    for (std::size_t k = 2; k + 1 < n; ++k) {
+      if (map_.adjacent(map_.origin(h), map_.origin(orbit[k]))) continue;
+      corners.clear();
+      for (std::size_t c = 0; c <= k; ++c) corners.push_back(map_.origin(orbit[c]));
+      double cost = polygon_cost(corners);
+      corners.assign(1, map_.origin(h));
+      for (std::size_t c = k; c < n; ++c) corners.push_back(map_.origin(orbit[c]));
+      cost += polygon_cost(corners);
+      if (cost >= least) continue;
+      least = cost;
+      best = orbit[k];
+    }
+    if (best != no_index) add_edge(h, best);
+  }
 }
 
 void FaceRepair::remove_dangling() {
@@ -64,6 +137,7 @@ void FaceRepair::cut(Index a, Index b) {
   clusters_.normals.push_back(Vec3(clusters_.normals[old]));
   clusters_.nodes.push_back(Index{clusters_.nodes[old]});
   clusters_.on_border.push_back(std::uint8_t{clusters_.on_border[old]});
+  clusters_.hold.push_back(std::uint8_t{clusters_.hold[old]});
 }
 
 void FaceRepair::cut_pinches() {
@@ -162,8 +236,7 @@ bool FaceRepair::split_once(Index h) {
     }
   }
   if (best == n) return false;
-  map_.add_edge(orbit[best], orbit[(best + piece - 1) % n]);
-  hole_.resize(map_.halfedges(), 0);
+  add_edge(orbit[best], orbit[(best + piece - 1) % n]);
   return true;
 }
 
@@ -181,8 +254,10 @@ void FaceRepair::add_hub(Index h) {
   clusters_.normals.push_back(length > 1e-6f ? Vec3(normal / length) : clusters_.normals[first]);
   clusters_.nodes.push_back(clusters_.nodes[first]);
   clusters_.on_border.push_back(0);
+  clusters_.hold.push_back(free_vertex);
   map_.add_hub(h);
   hole_.resize(map_.halfedges(), 0);
+  lines_.resize(map_.halfedges() / 2, no_index);
 }
 
 void FaceRepair::split_large() {

@@ -17,8 +17,10 @@ namespace meshgrain {
 /// triangles for 6, mostly quads for 4.
 class FaceRepair {
  public:
-  /// `holes`: a flag for each halfedge, whether its orbit is open.
-  FaceRepair(PolygonMap& map, Clusters& clusters, int posy, std::vector<std::uint8_t> holes);
+  /// `holes`: a flag for each halfedge, whether its orbit is open. `lines`: the feature line of
+  /// each edge, or no_index; these edges stay.
+  FaceRepair(PolygonMap& map, Clusters& clusters, int posy, std::vector<std::uint8_t> holes,
+             std::vector<Index> lines);
 
   // For faces that were found by walking around a graph (face_repair.cpp).
 
@@ -33,6 +35,9 @@ class FaceRepair {
   /// an edge; `border_vertices`), and what is longer than `largest_gap`.
   void find_holes(std::span<const std::uint8_t> border_edges,
                   std::span<const std::uint8_t> border_vertices, std::size_t largest_gap);
+
+  /// Where a line runs straight along two edges of one face, gives that face another edge there.
+  void part_straight_angles();
 
   // Quads (quad_repair.cpp).
 
@@ -67,6 +72,8 @@ class FaceRepair {
   void split_large();
 
   bool is_hole(Index h) const { return hole_[h]; }
+  /// The feature line that the edge of h is part of, or no_index.
+  Index line(Index h) const { return lines_[h / 2]; }
 
  private:
   double corner_angle(Index h) const;
@@ -85,8 +92,15 @@ class FaceRepair {
   bool is_irregular(Index vertex, int change) const;
   /// The halfedges around the two faces of an edge, without it.
   std::vector<Index> union_halfedges(Index h) const;
-  /// How far from regular the face would be that an edge leaves when it goes.
-  double removal_cost(Index h) const;
+  /// Whether what the two become without the edge would have a corner twice.
+  bool touches_itself(Index h) const;
+  /// Whether the origin of h would be left with a face that has a straight angle there, between two
+  /// edges of feature lines, if the edge of h went.
+  bool is_last_rung(Index h) const;
+  /// Whether a face between two edges of feature lines, that leave the origin of `to` and come from
+  /// `from`, has a straight angle there. `normal` is that of the face.
+  bool is_straight(Index to, Index from, const Vec3& normal) const;
+  Vec3 face_normal(Index h) const;
   /// By how much the number of irregular vertices falls if the origin of h and the corner opposite
   /// to it in their quad become one; nothing if they must not.
   std::optional<int> closing_gain(Index h) const;
@@ -100,6 +114,7 @@ class FaceRepair {
   int flip_gain(Index h) const;
   bool split_once(Index h);
   void contract(Index h);
+  Index add_edge(Index a, Index b);
   void add_hub(Index h);
   void cut(Index a, Index b);
 
@@ -107,6 +122,7 @@ class FaceRepair {
   Clusters& clusters_;
   int posy_;
   std::vector<std::uint8_t> hole_;  // one flag a halfedge
+  std::vector<Index> lines_;        // one an edge
   LinkCondition link_;
 };
 

@@ -5,6 +5,7 @@
 
 #include "extract/link_condition.h"
 #include "extract/polygon_map.h"
+#include "features/feature_edges.h"
 #include "field/jumps.h"
 
 namespace meshgrain {
@@ -16,6 +17,8 @@ struct JumpMap {
   PolygonMap map;
   std::vector<std::uint8_t> holes;  // for each halfedge, whether it lies outside
   std::vector<Jump> jumps;          // of each edge, in the frame of its even halfedge's origin
+  std::vector<Index> lines;         // the feature line that each edge is part of, or no_index
+  std::vector<std::uint8_t> hold;   // of each vertex: Hold
 
   Jump jump(Index h) const {
     const Jump& stored = jumps[h / 2];
@@ -43,6 +46,19 @@ struct JumpMap {
     } while (h != start);
   }
 
+  bool on_feature(Index h) const { return lines[h / 2] != no_index; }
+
+  /// Whether h may be contracted, its target vanishing, as far as features are concerned: corners
+  /// stay, lines shrink only along themselves, and no two edges of lines become one.
+  bool keeps_features(Index h) const {
+    if (hold[map.target(h)] == free_vertex) return true;
+    if (hold[map.target(h)] == at_corner || !on_feature(h)) return false;
+    const auto is_between_lines = [&](Index side) {
+      return !holes[side] && on_feature(map.next(side)) && on_feature(map.prev(side));
+    };
+    return !is_between_lines(h) && !is_between_lines(PolygonMap::twin(h));
+  }
+
   /// Contracts h, whose target vanishes; the edges that left it now leave its origin. The triangles
   /// on both sides lose two edges to one: `is_better(from, to, a, b)` says whether jump a rather
   /// than jump b should stay between two vertices where they disagree, as they do if the triangle
@@ -64,7 +80,8 @@ struct JumpMap {
     const auto choose = [&](Index from_b, Index from_a, Index apex) -> Zip {
       const Jump of_b = map.origin(from_b) == b ? jump(from_b) : jump(PolygonMap::twin(from_b));
       const Jump of_a = map.origin(from_a) == a ? jump(from_a) : jump(PolygonMap::twin(from_a));
-      const bool b_better = of_a.t != of_b.t && is_better(a, apex, of_b, of_a);
+      const bool b_better =
+          !on_feature(from_a) && of_a.t != of_b.t && is_better(a, apex, of_b, of_a);
       return b_better ? Zip{from_a, from_b} : Zip{from_b, from_a};
     };
     Zip zips[2];
@@ -74,6 +91,7 @@ struct JumpMap {
     map.contract_edge(h);
     for (int k = 0; k < count; ++k) {
       holes[zips[k].kept] = holes[PolygonMap::twin(zips[k].gone)];
+      if (on_feature(zips[k].gone)) lines[zips[k].kept / 2] = lines[zips[k].gone / 2];
       map.remove_edge(zips[k].gone);
     }
   }

@@ -54,7 +54,7 @@ double LatticeMesh::total_angle(Index vertex) const {
 
 bool LatticeMesh::may_flip(Index h) const {
   const Index t = PolygonMap::twin(h);
-  if (map.removed(h) || holes[h] || holes[t]) return false;
+  if (map.removed(h) || holes[h] || holes[t] || on_feature(h)) return false;
   const Index c = map.origin(map.prev(h)), d = map.origin(map.prev(t));
   if (c == d || map.adjacent(c, d)) return false;
   // An inner vertex needs three edges, one on the border two.
@@ -85,6 +85,7 @@ void LatticeMesh::add_edge(Index from, Index to, const Jump& jump) {
   const Index added = map.add_edge(from, to);
   holes.resize(map.halfedges(), 0);
   jumps.resize(map.halfedges() / 2);
+  lines.resize(map.halfedges() / 2, no_index);
   set_jump(added, jump);
 }
 
@@ -97,7 +98,7 @@ float LatticeMesh::reach_with_target(Index h) const {
 bool LatticeMesh::may_collapse(Index h) {
   constexpr float farthest = 2;
   if (clusters.on_border[map.target(h)] && !clusters.on_border[map.origin(h)]) return false;
-  if (reach_with_target(h) > farthest) return false;
+  if (reach_with_target(h) > farthest || !keeps_features(h)) return false;
   return link_.holds(map, holes, h);
 }
 
@@ -114,12 +115,14 @@ void LatticeMesh::collapse_edge(Index h) {
   });
 }
 
-void LatticeMesh::add_vertex(Index like, const Vec3& position, bool on_border) {
+void LatticeMesh::add_vertex(Index like, const Vec3& position, bool on_border, Hold held) {
   clusters.positions.push_back(position);
   clusters.normals.push_back(clusters.normals[like]);
   clusters.nodes.push_back(clusters.nodes[like]);
   clusters.cover.push_back(0);
   clusters.on_border.push_back(on_border);
+  clusters.hold.push_back(held);
+  hold.push_back(held);
   directions_.push_back(directions_[like]);
   lengths_.push_back(lengths_[like]);
   reach_.push_back(0);
@@ -130,11 +133,13 @@ void LatticeMesh::split(Index h, const std::array<int, 2>& t) {
   const Vec3 &a = clusters.positions[map.origin(h)], &b = clusters.positions[map.target(h)];
   const Jump whole = jump(h);
   const double share = std::sqrt(metric().squared_length(t) / squared_length(h));
-  add_vertex(map.origin(h), a + static_cast<float>(share) * (b - a), holes[h] || holes[twin]);
+  add_vertex(map.origin(h), a + static_cast<float>(share) * (b - a), holes[h] || holes[twin],
+             on_feature(h) ? on_line : free_vertex);
   const Index rest = map.split_edge(h);  // from the new vertex to the old target
   holes.push_back(holes[h]);
   holes.push_back(holes[twin]);
   jumps.emplace_back();
+  lines.push_back(lines[h / 2]);
   const Jump first{0, t}, back = reversed(first, posy);
   set_jump(h, first);
   set_jump(rest, composed(back, whole, posy));
@@ -153,14 +158,27 @@ void LatticeMesh::insert(Index h, const std::array<int, 2>& t, const Jump& to_ap
   const Index a = map.origin(h), b = map.target(h), c = map.target(map.next(h));
   const Jump back = reversed(Jump{0, t}, posy);
   const Jump to_b = composed(back, jump(h), posy);
-  add_vertex(a, (clusters.positions[a] + clusters.positions[b] + clusters.positions[c]) / 3, false);
+  add_vertex(a, (clusters.positions[a] + clusters.positions[b] + clusters.positions[c]) / 3, false,
+             free_vertex);
   const auto spoke = static_cast<Index>(map.halfedges());  // two a corner, the first to a
   map.add_hub(h);
   holes.resize(map.halfedges(), 0);
   jumps.resize(map.halfedges() / 2);
+  lines.resize(map.halfedges() / 2, no_index);
   set_jump(spoke, back);
   set_jump(spoke + 2, to_b);
   set_jump(spoke + 4, to_apex);
+}
+
+bool LatticeMesh::shift_leaves_axis(Index vertex, const std::array<int, 2>& t) const {
+  bool leaves = false;
+  for_each_leaving(vertex, [&](Index g) {
+    const auto own = jump(g).t;
+    // Along an axis is the same from both ends.
+    leaves = leaves || (on_feature(g) && is_along_axis(own, posy) &&
+                        !is_along_axis({own[0] - t[0], own[1] - t[1]}, posy));
+  });
+  return leaves;
 }
 
 void LatticeMesh::shift(Index vertex, const std::array<int, 2>& t) {

@@ -7,6 +7,7 @@
 #include "extract/clusters.h"
 #include "extract/jump_map.h"
 #include "extract/lattice_triangle.h"
+#include "features/feature_jumps.h"
 
 namespace meshgrain {
 
@@ -61,6 +62,13 @@ class LatticeMesh : public JumpMap {
   /// there to the corner opposite of h.
   void insert(Index h, const std::array<int, 2>& t, const Jump& to_apex);
 
+  /// Whether a jump of h would leave a feature line that runs along an axis of the lattice.
+  bool leaves_axis(Index h, const std::array<int, 2>& t) const {
+    return on_feature(h) && is_along_axis(jumps[h / 2].t, posy) && !is_along_axis(t, posy);
+  }
+
+  /// Whether shift() would make a line leave its axis.
+  bool shift_leaves_axis(Index vertex, const std::array<int, 2>& t) const;
   /// Moves a vertex by a lattice vector: only the numbers change.
   void shift(Index vertex, const std::array<int, 2>& t);
 
@@ -69,7 +77,7 @@ class LatticeMesh : public JumpMap {
   /// it, if the target did too.
   float reach_with_target(Index h) const;
   LatticePoint coordinates(const Vec3& d, Index vertex) const;
-  void add_vertex(Index like, const Vec3& position, bool on_border);
+  void add_vertex(Index like, const Vec3& position, bool on_border, Hold held);
   void add_edge(Index from, Index to, const Jump& jump);
 
   std::vector<Vec3> directions_;

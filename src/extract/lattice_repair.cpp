@@ -117,7 +117,7 @@ class LatticeRepair {
     return std::all_of(changes_.begin(), changes_.end(), [&](const Change& change) {
       const Index v = change.vertex;
       if (v == gone || v == no_index || std::abs(change.angle) < tolerance) return true;
-      if (lattice_.clusters.on_border[v]) return true;
+      if (lattice_.clusters.on_border[v] || lattice_.hold[v] == at_corner) return true;
       const double angle = lattice_.total_angle(v) + change.angle;
       return std::abs(angle - full_angle(v, after)) < tolerance;
     });
@@ -142,11 +142,10 @@ class LatticeRepair {
       again = false;
       for (Index h = 0; h < map_.halfedges(); h += 2) {
         if (map_.removed(h) || !lattice_.jumps[h / 2].is_zero()) continue;
-        // Whoever covers more of the surface stays, on the border whoever lies there.
+        // Whoever is held more stays, else who covers more of the surface.
         const Index a = map_.origin(h), b = map_.target(h);
-        const auto& [cover, border] =
-            std::tie(lattice_.clusters.cover, lattice_.clusters.on_border);
-        const bool stays = border[a] != border[b] ? border[a] : cover[a] >= cover[b];
+        const auto& [cover, hold] = std::tie(lattice_.clusters.cover, lattice_.hold);
+        const bool stays = hold[a] != hold[b] ? hold[a] > hold[b] : cover[a] >= cover[b];
         const Index into = stays ? h : PolygonMap::twin(h);
         if (!is_news(zero_edges_, h / 2, std::array{a, b}) || !lattice_.may_collapse(into))
           continue;
@@ -225,6 +224,7 @@ class LatticeRepair {
       after[1].lattice.around[0] = back;
       const double gain = flaws(before) - flaws(after) + lattice_.squared_length(h) -
                           lattice_.metric().squared_length(back.t);
+      if (lattice_.leaves_axis(h, back.t)) continue;
       if (gain < least_gain || !keeps_angles(before, after)) continue;
       lattice_.set_jump(t, back);
       touch(corners(h));
@@ -243,6 +243,7 @@ class LatticeRepair {
       constexpr int reach = 2;
       for (int x = -reach; x <= reach; ++x) {
         for (int y = -reach; y <= reach; ++y) {
+          if (lattice_.shift_leaves_axis(v, {x, y})) continue;
           lattice_.shift(v, {x, y});
           star(v, after_);
           lattice_.shift(v, {-x, -y});

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "features/feature_jumps.h"
 #include "field/posy.h"
 
 namespace meshgrain {
@@ -14,12 +15,15 @@ namespace {
 /// The triangles with a jump on every edge, as they shrink.
 class Collapse {
  public:
-  Collapse(const Mesh& surface, const Graph& graph, const OrientationField& orientation,
-           const PositionField& position, PositionEnergy energy, const Context& context)
-      : graph_(graph),
-        orientation_(orientation),
-        position_(position),
-        lattice_{position.posy, {}, {}, {}} {
+  Collapse(const Mesh& surface, const FeatureLines& features, const Graph& graph,
+           const OrientationField& orientation, const PositionField& position,
+           PositionEnergy energy, const Context& context)
+      : graph_(graph), orientation_(orientation), position_(position), lattice_{position.posy,
+                                                                                {},
+                                                                                {},
+                                                                                {},
+                                                                                {},
+                                                                                {}} {
     lattice_.map = PolygonMap(surface, sources_, holes_, context);
     merged_into_.resize(map_.vertices());
     std::iota(merged_into_.begin(), merged_into_.end(), Index{0});
@@ -27,12 +31,20 @@ class Collapse {
     for (Index h = 0; h < map_.halfedges(); ++h) {
       if (holes_[h]) rim_[map_.origin(h)] = 1;
     }
+    const FeatureEdges edges(features, graph.size());
+    lattice_.hold.resize(map_.vertices());
+    for (Index v = 0; v < map_.vertices(); ++v) lattice_.hold[v] = edges.hold(sources_[v]);
+    hold_ = lattice_.hold;
     jumps_.resize(map_.halfedges() / 2);
+    lattice_.lines.resize(map_.halfedges() / 2);
+    const FeatureJumps jumps(graph, orientation, position, energy);
     context.for_ranges(jumps_.size(), 4096, [&](std::size_t begin, std::size_t end) {
       for (std::size_t e = begin; e < end; ++e) {
         const auto h = static_cast<Index>(2 * e);
-        jumps_[e] = edge_jump(graph, orientation, position, energy, sources_[map_.origin(h)],
-                              sources_[map_.target(h)]);
+        const Index i = sources_[map_.origin(h)], j = sources_[map_.target(h)];
+        const Index line = lattice_.lines[e] = edges.line(i, j);
+        jumps_[e] = jumps.jump(i, j, edges.hold(i), edges.hold(j),
+                               line != no_index && features.align[line] > 0);
       }
     });
   }
@@ -62,8 +74,9 @@ class Collapse {
           context.progress("extraction", static_cast<double>(done) / static_cast<double>(before));
         }
         if (map_.removed(c.h) || !jumps_[c.h / 2].is_zero()) continue;
-        if (link_.holds(map_, holes_, c.h)) {
-          collapse(c.h);
+        const Index h = inwards(c.h);
+        if (lattice_.keeps_features(h) && link_.holds(map_, holes_, h)) {
+          collapse(h);
         } else {
           candidates[kept++] = c;
         }
@@ -88,10 +101,15 @@ class Collapse {
     return (p - position_.points[j]).norm();
   }
 
+  /// The side of h whose target is the one to vanish: who is less held, or has the smaller star.
+  Index inwards(Index h) const {
+    const Index a = map_.origin(h), b = map_.target(h);
+    const int held = lattice_.hold[a] - lattice_.hold[b];
+    const bool stays = held != 0 ? held > 0 : map_.valence(a) >= map_.valence(b);
+    return stays ? h : PolygonMap::twin(h);
+  }
+
   void collapse(Index h) {
-    // The smaller star moves.
-    const auto valence = [&](Index v) { return map_.valence(v); };
-    if (valence(map_.origin(h)) < valence(map_.target(h))) h = PolygonMap::twin(h);
     const Index a = map_.origin(h), b = map_.target(h);
     lattice_.collapse(h, [&](Index from, Index to, const Jump& x, const Jump& y) {
       return deviation(from, to, x.t) < deviation(from, to, y.t);
@@ -108,7 +126,8 @@ class Collapse {
   std::vector<std::uint8_t>& holes_ = lattice_.holes;
   std::vector<Jump>& jumps_ = lattice_.jumps;
   std::vector<Index> merged_into_;
-  std::vector<std::uint8_t> rim_;  // for each vertex at the start, whether it was on a border
+  // For each vertex at the start, whether it was on a border, and how it was held.
+  std::vector<std::uint8_t> rim_, hold_;
   LinkCondition link_;
 };
 
@@ -147,31 +166,37 @@ CollapsedMesh Collapse::result() && {
   }
   std::vector<Index> roots(rank.vertex_count);
   for (Index v = 0; v < vertices; ++v) {
-    if (rank.vertices[v] != no_index) roots[rank.vertices[v]] = sources_[v];
+    const Index to = rank.vertices[v];  // a lower place, in order
+    if (to == no_index) continue;
+    roots[to] = sources_[v];
+    lattice_.hold[to] = lattice_.hold[v];
   }
+  lattice_.hold.resize(rank.vertex_count);
   for (Index e = 0; e < rank.edges.size(); ++e) {  // to lower places, in order
     const Index to = rank.edges[e];
     if (to == no_index) continue;
     holes_[2 * to] = holes_[2 * e];
     holes_[2 * to + 1] = holes_[2 * e + 1];
     jumps_[to] = jumps_[e];
+    lattice_.lines[to] = lattice_.lines[e];
   }
   holes_.resize(map_.halfedges());
   holes_.shrink_to_fit();
   jumps_.resize(map_.halfedges() / 2);
   jumps_.shrink_to_fit();
+  lattice_.lines.resize(jumps_.size());
   Clusters clusters =
-      average_clusters(graph_, position_, sources_, cluster, rim_, rank.vertex_count);
+      average_clusters(graph_, position_, sources_, cluster, rim_, hold_, rank.vertex_count);
   auto meetings = find_meetings(sources_, cluster, graph_.size());
   return {std::move(lattice_), std::move(clusters), std::move(roots), std::move(meetings)};
 }
 
 }  // namespace
 
-CollapsedMesh collapse_mesh(const Mesh& surface, const Graph& graph,
+CollapsedMesh collapse_mesh(const Mesh& surface, const FeatureLines& features, const Graph& graph,
                             const OrientationField& orientation, const PositionField& position,
                             PositionEnergy energy, const Context& context) {
-  Collapse collapse(surface, graph, orientation, position, energy, context);
+  Collapse collapse(surface, features, graph, orientation, position, energy, context);
   collapse.run(context);
   return std::move(collapse).result();
 }

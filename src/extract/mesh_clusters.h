@@ -2,6 +2,7 @@
 
 #include "extract/clusters.h"
 #include "extract/jump_map.h"
+#include "meshgrain/features.h"
 
 namespace meshgrain {
 
@@ -19,9 +20,10 @@ struct CollapsedMesh {
 
 /// Collapses the edges of the mesh itself, shortest first, where their jump is zero and the link
 /// condition holds (Dey et al. 1999): the result has the components, borders and genus of the
-/// input, whatever the fields are. What is not manifold is cut first. `surface` is the triangle
-/// mesh whose vertices are the graph's nodes.
-CollapsedMesh collapse_mesh(const Mesh& surface, const Graph& graph,
+/// input, whatever the fields are. What is not manifold is cut first. Lines of features collapse
+/// only along themselves, so that each stays a chain of edges. `surface` is the triangle mesh whose
+/// vertices are the graph's nodes.
+CollapsedMesh collapse_mesh(const Mesh& surface, const FeatureLines& features, const Graph& graph,
                             const OrientationField& orientation, const PositionField& position,
                             PositionEnergy energy, const Context& context);
 

@@ -24,7 +24,7 @@ void FaceRepair::remove_doublets() {
     again = false;
     for (Index v = 0; v < clusters_.positions.size(); ++v) {
       const Index h = map_.leaving(v);
-      if (h == no_index || map_.valence(v) != 2) continue;
+      if (h == no_index || map_.valence(v) != 2 || clusters_.hold[v] != free_vertex) continue;
       const Index g = map_.around(h);
       if (hole_[h] || hole_[g]) continue;
       // The faces must share nothing but the two edges, or what they become would touch itself.
@@ -43,12 +43,6 @@ void FaceRepair::remove_doublets() {
   }
 }
 
-double FaceRepair::removal_cost(Index h) const {
-  std::vector<Index> corners = union_halfedges(h);
-  for (Index& corner : corners) corner = map_.origin(corner);
-  return has_repeats(corners) ? 1e30 : polygon_cost(corners);
-}
-
 void FaceRepair::remove_diagonals(std::span<const Jump> jumps) {
   const auto is_diagonal = [&](Index h) {
     const auto& t = jumps[h / 2].t;
@@ -62,11 +56,10 @@ void FaceRepair::remove_diagonals(std::span<const Jump> jumps) {
     for (Index g : {h, map_.next(h), map_.prev(h)}) count[h] += is_diagonal(g);
   }
   const auto remove = [&](Index h, std::size_t most) {
-    if (map_.degree(h) + map_.degree(h + 1) - 2 > most) return;
+    if (line(h) != no_index || map_.degree(h) + map_.degree(h + 1) - 2 > most) return;
     if (map_.valence(map_.origin(h)) <= 3 || map_.valence(map_.target(h)) <= 3) return;
-    std::vector<Index> corners = union_halfedges(h);
-    for (Index& corner : corners) corner = map_.origin(corner);
-    if (!has_repeats(corners)) map_.remove_edge(h);
+    if (is_last_rung(h) || is_last_rung(PolygonMap::twin(h))) return;
+    if (!touches_itself(h)) map_.remove_edge(h);
   };
   for (const int most : {2, 3, 4}) {
     for (Index h = 0; h < 2 * jumps.size(); h += 2) {
@@ -81,6 +74,12 @@ bool FaceRepair::is_irregular(Index vertex, int change) const {
          regular_valence(clusters_.on_border[vertex]);
 }
 
+bool FaceRepair::touches_itself(Index h) const {
+  std::vector<Index> corners = union_halfedges(h);
+  for (Index& corner : corners) corner = map_.origin(corner);
+  return has_repeats(corners);
+}
+
 std::vector<Index> FaceRepair::union_halfedges(Index h) const {
   const Index t = PolygonMap::twin(h);
   std::vector<Index> halfedges;
@@ -92,7 +91,7 @@ std::vector<Index> FaceRepair::union_halfedges(Index h) const {
 FaceRepair::EdgeChange FaceRepair::best_change(Index h) const {
   EdgeChange best;
   const Index t = PolygonMap::twin(h);
-  if (map_.removed(h) || hole_[h] || hole_[t]) return best;
+  if (map_.removed(h) || hole_[h] || hole_[t] || line(h) != no_index) return best;
   const auto a = static_cast<int>(map_.degree(h)), b = static_cast<int>(map_.degree(t));
   const int n = a + b - 2;
   if (n > 7) return best;
@@ -100,6 +99,7 @@ FaceRepair::EdgeChange FaceRepair::best_change(Index h) const {
   for (const Index v : ends) {
     if (static_cast<int>(map_.valence(v)) < regular_valence(clusters_.on_border[v])) return best;
   }
+  const bool needs_rung[2] = {is_last_rung(h), is_last_rung(t)};
   std::vector<Index> corners = union_halfedges(h);
   for (Index& corner : corners) corner = map_.origin(corner);
   if (has_repeats(corners)) return best;
@@ -113,7 +113,7 @@ FaceRepair::EdgeChange FaceRepair::best_change(Index h) const {
       best = {gain, cost, h, from, to};
     }
   };
-  if (n <= 5 && gain_of_removal - (n != 4) > 0) {
+  if (!needs_rung[0] && !needs_rung[1] && n <= 5 && gain_of_removal - (n != 4) > 0) {
     keep_better(gain_of_removal - (n != 4), polygon_cost(corners), -1, -1);
   }
   // Or another edge in its place: one that cuts off a quad.
@@ -121,6 +121,9 @@ FaceRepair::EdgeChange FaceRepair::best_change(Index h) const {
     for (int to = from + 2; to <= std::min(n - 1, from + n - 2); ++to) {
       const int left = to - from + 1, right = n - left + 2;
       if (left != 4 && right != 4) continue;
+      const auto ends_at = [&](Index v) { return corners[from] == v || corners[to] == v; };
+      if (needs_rung[0] && !ends_at(ends[0])) continue;
+      if (needs_rung[1] && !ends_at(ends[1])) continue;
       int gain = gain_of_removal - (left != 4) - (right != 4);
       for (const Index v : {corners[from], corners[to]}) {
         const int before = loses(v) ? -1 : 0;
@@ -142,8 +145,7 @@ void FaceRepair::apply(const EdgeChange& change) {
   const std::vector<Index> halfedges = union_halfedges(change.h);
   map_.remove_edge(change.h);
   if (change.from < 0) return;
-  map_.add_edge(halfedges[change.from], halfedges[change.to]);
-  hole_.resize(map_.halfedges(), 0);
+  add_edge(halfedges[change.from], halfedges[change.to]);
 }
 
 void FaceRepair::improve_edges() {
@@ -174,7 +176,9 @@ std::optional<int> FaceRepair::closing_gain(Index h) const {
   const Index across = map_.next(map_.next(h));
   const Index a = map_.origin(h), c = map_.origin(across);
   const Index sides[2] = {map_.origin(map_.next(h)), map_.origin(map_.next(across))};
-  if (clusters_.on_border[a] || clusters_.on_border[c]) return std::nullopt;
+  for (const Index v : {a, c}) {
+    if (clusters_.on_border[v] || clusters_.hold[v] != free_vertex) return std::nullopt;
+  }
   // The two may have nothing in common but this face, or other faces would come to touch
   // themselves.
   std::vector<Index> near;
@@ -205,9 +209,7 @@ void FaceRepair::close_quad(Index h) {
   const Index across = map_.next(map_.next(h));
   const Index a = map_.origin(h), c = map_.origin(across);
   clusters_.positions[a] = 0.5f * (clusters_.positions[a] + clusters_.positions[c]);
-  const Index chord = map_.add_edge(h, across);
-  hole_.resize(map_.halfedges(), 0);
-  contract(chord);
+  contract(add_edge(h, across));
 }
 
 void FaceRepair::close_quads() {

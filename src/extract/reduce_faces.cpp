@@ -1,11 +1,31 @@
 #include "extract/reduce_faces.h"
 
+#include <algorithm>
+#include <array>
+#include <map>
 #include <utility>
 
 #include "extract/collect_faces.h"
 #include "extract/face_repair.h"
 
 namespace meshgrain {
+namespace {
+
+std::vector<Index> lines_of_edges(const Extraction& extraction, const PolygonMap& map) {
+  std::map<std::array<Index, 2>, Index> lines;
+  for (const auto& [a, b, line] : extraction.line_edges) {
+    lines[{std::min(a, b), std::max(a, b)}] = line;
+  }
+  std::vector<Index> result(map.halfedges() / 2, no_index);
+  for (Index e = 0; e < result.size(); ++e) {
+    const Index a = map.origin(2 * e), b = map.target(2 * e);
+    const auto it = lines.find({std::min(a, b), std::max(a, b)});
+    if (it != lines.end()) result[e] = it->second;
+  }
+  return result;
+}
+
+}  // namespace
 
 std::size_t reduce_faces(Extraction& extraction, int posy, std::size_t count,
                          const Context& context) {
@@ -24,7 +44,10 @@ std::size_t reduce_faces(Extraction& extraction, int posy, std::size_t count,
   for (Index h = 0; h < map.halfedges(); ++h) {
     if (holes[h]) clusters.on_border[map.origin(h)] = 1;
   }
-  FaceRepair repair(map, clusters, posy, std::move(holes));
+  clusters.hold.assign(sources.size(), free_vertex);
+  for (const LineEdge& e : extraction.line_edges) clusters.hold[e.a] = clusters.hold[e.b] = on_line;
+  for (const Index v : extraction.corners) clusters.hold[v] = at_corner;
+  FaceRepair repair(map, clusters, posy, std::move(holes), lines_of_edges(extraction, map));
   const std::size_t done = posy == 4 ? repair.close_quads(count) : repair.contract_edges(count);
   std::vector<Index> vertex;
   if (done > 0) extraction = collect_faces(map, repair, clusters, vertex);

@@ -24,8 +24,9 @@ void FaceRepair::contract(Index h) {
 /// differences); 0 if it must stay.
 int FaceRepair::flip_gain(Index h) const {
   const Index t = PolygonMap::twin(h);
-  if (map_.removed(h) || hole_[h] || hole_[t] || map_.degree(h) != 3 || map_.degree(t) != 3)
-    return 0;
+  if (map_.removed(h) || hole_[h] || hole_[t] || line(h) != no_index) return 0;
+  if (map_.degree(h) != 3 || map_.degree(t) != 3) return 0;
+  if (is_last_rung(h) || is_last_rung(t)) return 0;
   const Index ends[2] = {map_.origin(h), map_.origin(t)};
   const Index tips[2] = {map_.origin(map_.prev(h)), map_.origin(map_.prev(t))};
   if (tips[0] == tips[1] || map_.adjacent(tips[0], tips[1])) return 0;
@@ -65,8 +66,7 @@ void FaceRepair::flip_edges() {
       if (flip_gain(h) != -loss) continue;
       const Index a = map_.prev(h), b = map_.prev(PolygonMap::twin(h));
       map_.remove_edge(h);
-      map_.add_edge(a, b);
-      hole_.resize(map_.halfedges(), 0);
+      add_edge(a, b);
       again = true;
     }
   }
@@ -80,6 +80,7 @@ std::optional<int> FaceRepair::contraction_gain(Index h) {
     return static_cast<int>(map_.valence(v)) + change != regular(v);
   };
   if (clusters_.on_border[b] && !clusters_.on_border[a]) return std::nullopt;
+  if (clusters_.hold[b] != free_vertex) return std::nullopt;
   if (!link_.holds(map_, hole_, h)) return std::nullopt;
   int sides = 0, gain = irregular(a, 0) + irregular(b, 0);
   for (const Index side : {h, t}) {
@@ -98,7 +99,7 @@ std::size_t FaceRepair::contract_edges(std::size_t count) {
       count, [&](Index h) { return contraction_gain(h); }, [&](Index h) { return map_.target(h); },
       [&](Index h) {
         const Index a = map_.origin(h), b = map_.target(h);
-        if (!clusters_.on_border[a]) {
+        if (!clusters_.on_border[a] && clusters_.hold[a] == free_vertex) {
           clusters_.positions[a] = 0.5f * (clusters_.positions[a] + clusters_.positions[b]);
         }
         contract(h);

@@ -4,45 +4,36 @@
 #include <cmath>
 #include <numbers>
 
-#include "mesh/border.h"
 #include "meshgrain/curvature.h"
 
 namespace meshgrain {
 
-BorderConstraints border_constraints(const Mesh& mesh) {
-  BorderConstraints result;
-  struct Sum {
-    Vec3 direction = Vec3::Zero();
-    bool corner = false;
+FeatureConstraints feature_constraints(const FeatureLines& lines) {
+  FeatureConstraints result;
+  std::vector<std::uint8_t> followed(lines.corners.size(), 0);
+  const auto corner = [&](Index v) {
+    const auto it = std::lower_bound(lines.corners.begin(), lines.corners.end(), v);
+    return it != lines.corners.end() && *it == v ? it - lines.corners.begin() : -1;
   };
-  std::vector<Sum> sums(mesh.positions.size());
-  std::vector<Index> vertices;
-  for (const auto& [a, b] : border_edges(mesh)) {
-    const Vec3 d = mesh.positions[b] - mesh.positions[a];
-    const float length = d.norm();
-    if (!(length > 0)) continue;
-    for (const Index v : {a, b}) {
-      Sum& sum = sums[v];
-      if (sum.direction.isZero()) {
-        vertices.push_back(v);
-        sum.direction = d / length;
-      } else {
-        // Where the border turns sharply no direction is better than the other.
-        constexpr float cos40 = 0.766f;
-        sum.corner = sum.corner || sum.direction.normalized().dot(d / length) < cos40;
-        sum.direction += d / length;
+  for (std::size_t line = 0; line < lines.size(); ++line) {
+    if (lines.align[line] == 0) continue;
+    const Index begin = lines.begin(line), last = lines.end(line) - 1;
+    const bool closed = lines.is_closed(line);
+    for (Index k = begin; k < last + !closed; ++k) {
+      const Vec3& p = lines.positions[k];
+      if (const auto c = corner(lines.vertices[k]); c >= 0) {
+        if (!followed[c]++) result.position.push_back({lines.vertices[k], p, Vec3::Zero(), 1});
+        continue;
       }
-    }
-  }
-  std::sort(vertices.begin(), vertices.end());
-  for (const Index v : vertices) {
-    const Vec3& p = mesh.positions[v];
-    if (sums[v].corner) {
-      result.position.push_back({v, p, Vec3::Zero(), 1});
-    } else {
-      const Vec3 direction = sums[v].direction.normalized();
-      result.orientation.push_back({v, direction, 1});
-      result.position.push_back({v, p, direction, 1});
+      const Vec3& before = lines.positions[k > begin ? k - 1 : last - 1];
+      const Vec3 in = p - before, out = lines.positions[k + 1] - p;
+      Vec3 direction = in.normalized() + out.normalized();
+      if (!(direction.norm() > 1e-3f)) continue;  // it turns back
+      direction.normalize();
+      if (lines.orient[line] > 0) {
+        result.orientation.push_back({lines.vertices[k], direction, lines.orient[line]});
+      }
+      result.position.push_back({lines.vertices[k], p, direction, lines.align[line]});
     }
   }
   return result;

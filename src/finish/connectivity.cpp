@@ -68,6 +68,15 @@ void split_into_quads(Extraction& extraction) {
       middle[edges[e].corner] = append_mean(extraction, ends);
     }
   }
+  std::vector<LineEdge> halves;
+  for (const auto& [a, b, line] : extraction.line_edges) {
+    const auto it = std::lower_bound(
+        edges.begin(), edges.end(), std::pair(std::min(a, b), std::max(a, b)),
+        [](const CornerEdge& e, const std::pair<Index, Index>& key) { return e.key() < key; });
+    halves.push_back({a, middle[it->corner], line});
+    halves.push_back({middle[it->corner], b, line});
+  }
+  extraction.line_edges = std::move(halves);
   mesh.faces = Faces();
   mesh.faces.reserve(faces.corners().size(), 4 * faces.corners().size());
   for (std::size_t f = 0; f < faces.size(); ++f) {

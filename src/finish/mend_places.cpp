@@ -14,8 +14,8 @@ namespace {
 
 class Mending {
  public:
-  Mending(const Mesh& mesh, const VertexFaces& around, const Placement& placement,
-          LocalSearch& search, const Context& context)
+  Mending(const Mesh& mesh, const VertexFaces& around, Placement& placement, LocalSearch& search,
+          const Context& context)
       : mesh_(mesh), around_(around), placement_(placement), search_(search), context_(context) {}
 
   void run() {
@@ -125,15 +125,20 @@ class Mending {
       if (slide(place)) return true;
       restore(place);
     }
-    if (loosen(place, false) || (small && slide(place))) return true;
+    if (loosen(place, Who::free) || (small && slide(place))) return true;
     restore(place);
-    return loosen(place, true);
+    return loosen(place, Who::free_and_ends);
   }
 
+  /// Ends that are held go before features do.
   bool reshape(const Place& place) {
-    if (loosen(place, false)) return true;
+    for (const Who who : {Who::free, Who::free_and_ends}) {
+      if (loosen(place, who)) return true;
+      restore(place);
+    }
+    if (leave_lines(place)) return true;
     restore(place);
-    return loosen(place, true);
+    return loosen(place, Who::all);
   }
 
   float mean_edge(const Place& place) const {
@@ -153,7 +158,7 @@ class Mending {
     std::vector<Index> nodes;
     Eigen::AlignedBox3f box;
     for (const LocalSearch::Place& at : place.before) {
-      nodes.push_back(at.seed.on_line != no_index ? at.seed.on_line : at.seed.node);
+      nodes.push_back(placement_.node(at.seed));
       box.extend(at.position);
     }
     const auto piece = placement_.projector().cut_out(box, std::move(nodes), most_searched);
@@ -175,9 +180,30 @@ class Mending {
     return is_mended(place);
   }
 
+  /// Lets the vertices of bad faces leave their feature lines, and move over the surface.
+  bool leave_lines(const Place& place) {
+    bool any = false;
+    for (const Index f : place.faces) {
+      if (search_.quality(f) >= acceptable) continue;
+      for (const Index v : mesh_.faces[f]) {
+        if (!std::ranges::binary_search(place.vertices, v)) continue;
+        any = placement_.release(v) || any;
+      }
+    }
+    return any && slide(place);
+  }
+
+  /// Who may leave the surface.
+  enum class Who { free, free_and_ends, all };
+
+  bool may_leave(Index v, Who who) const {
+    if (who == Who::all || placement_.is_free(v)) return true;
+    return who == Who::free_and_ends && placement_.is_tethered(v);
+  }
+
   /// Off the surface, but not far: each vertex towards its neighbours, until nothing crosses.
-  /// Returns whether that came to be. Vertices that hold an end out move only if `with_ends`.
-  bool loosen(const Place& place, bool with_ends) {
+  /// Returns whether that came to be.
+  bool loosen(const Place& place, Who who) {
     constexpr int steps = 30;
     const float farthest = mean_edge(place);
     for (int step = 0; step < steps && !is_mended(place); ++step) {
@@ -189,7 +215,7 @@ class Mending {
         next.push_back(start + moved * std::min(1.0f, farthest / std::max(moved.norm(), 1e-30f)));
       }
       for (std::size_t k = 0; k < place.vertices.size(); ++k) {
-        if (!with_ends && placement_.is_tethered(place.vertices[k])) continue;
+        if (!may_leave(place.vertices[k], who)) continue;
         search_.put(place.vertices[k], {next[k], place.before[k].seed});
       }
     }
@@ -198,14 +224,14 @@ class Mending {
 
   const Mesh& mesh_;
   const VertexFaces& around_;
-  const Placement& placement_;
+  Placement& placement_;
   LocalSearch& search_;
   const Context& context_;
 };
 
 }  // namespace
 
-void mend_places(const Mesh& mesh, const VertexFaces& around, const Placement& placement,
+void mend_places(const Mesh& mesh, const VertexFaces& around, Placement& placement,
                  LocalSearch& search, const Context& context) {
   Mending(mesh, around, placement, search, context).run();
 }

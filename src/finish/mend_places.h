@@ -10,9 +10,10 @@ namespace meshgrain {
 
 /// Mends what untangle() leaves, mostly in crevices and thin parts: faces that pass through each
 /// other, are turned over or nearly degenerate. They move over the surface, or if that fails a
-/// little off it. Where nothing helps, or the surface passes through itself, all stays as it was.
-/// `search` is over the same mesh.
-void mend_places(const Mesh& mesh, const VertexFaces& around, const Placement& placement,
+/// little off it; if that fails too, they let go of the features that hold them. Where nothing
+/// helps, or the surface passes through itself, all stays as it was. `search` is over the same
+/// mesh.
+void mend_places(const Mesh& mesh, const VertexFaces& around, Placement& placement,
                  LocalSearch& search, const Context& context);
 
 }  // namespace meshgrain

@@ -1,25 +1,23 @@
 #include "finish/placement.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace meshgrain {
 
 Placement::Placement(Extraction& extraction, const Mesh& surface, const Graph& graph,
-                     double crease_degrees, const Context& context)
+                     const FeatureLines& lines, const Context& context)
     : extraction_(extraction),
-      surface_(surface),
       projector_(surface, graph, context),
-      lines_(surface, crease_degrees, context),
-      rails_(attach_to_lines(extraction, surface, lines_)),
-      tether_(extraction.mesh.positions.size(), no_index) {}
+      rails_(extraction, lines),
+      tether_(extraction.mesh.positions.size(), no_index) {
+  for (const Index v : extraction.corners) {
+    extraction.mesh.positions[v] = surface.positions[extraction.nodes[v]];
+  }
+}
 
 Vec3 Placement::place(const Vec3& p, std::size_t v) {
-  Index& on_line = rails_.seed[v];
-  if (rails_.fixed[v]) {
-    return on_line != no_index ? surface_.positions[on_line] : extraction_.mesh.positions[v];
-  }
-  if (on_line != no_index) return lines_.project(p, on_line);
+  if (is_fixed(v)) return extraction_.mesh.positions[v];
+  if (!rails_.is_free(v)) return rails_.project(p, v);
   const Vec3 q = projector_.project(p, extraction_.nodes[v]);
   if (!is_tethered(v)) return q;
   const auto& [end, radius] = tethers_[tether_[v]];
@@ -36,13 +34,6 @@ void Placement::tether(std::size_t v, const Vec3& p, Index node, const Vec3& end
     tethers_.emplace_back();
   }
   tethers_[tether_[v]] = {end, std::max(radius, (p - end).norm())};
-}
-
-bool Placement::release(std::size_t v) {
-  if (rails_.seed[v] == no_index) return false;
-  extraction_.nodes[v] = std::exchange(rails_.seed[v], no_index);
-  rails_.fixed[v] = 0;
-  return true;
 }
 
 }  // namespace meshgrain

@@ -90,7 +90,7 @@ class Smoother {
  public:
   /// Puts all vertices onto the surface.
   Smoother(Extraction& extraction, const Mesh& surface, const Graph& graph,
-           const SmoothOptions& options, const Context& context);
+           const FeatureLines& features, const SmoothOptions& options, const Context& context);
 
   void iterate(int iterations);
 
@@ -120,14 +120,15 @@ class Smoother {
 };
 
 Smoother::Smoother(Extraction& extraction, const Mesh& surface, const Graph& graph,
-                   const SmoothOptions& options, const Context& context)
+                   const FeatureLines& features, const SmoothOptions& options,
+                   const Context& context)
     : extraction_(extraction),
       mesh_(extraction.mesh),
       graph_(graph),
       nodes_are_vertices_(graph.size() == surface.positions.size()),
       options_(options),
       context_(context),
-      placement_(extraction, surface, graph, options.crease_degrees, context),
+      placement_(extraction, surface, graph, features, context),
       around_(vertex_faces(mesh_, context)) {
   previous_.resize(mesh_.positions.size());
   for_vertices([&](std::size_t v) { previous_[v] = placement_.place(mesh_.positions[v], v); });
@@ -225,7 +226,7 @@ void Smoother::hold_ends() {
 
 void Smoother::mend() {
   LocalSearch search(extraction_, around_, placement_);
-  untangle(mesh_, around_, placement_, search, context_);
+  untangle(mesh_, around_, search, context_);
   mend_places(mesh_, around_, placement_, search, context_);
 }
 
@@ -233,7 +234,12 @@ void Smoother::mend() {
 
 void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
             const SmoothOptions& options, const Context& context) {
-  Smoother smoother(extraction, surface, graph, options, context);
+  FeatureLines border;
+  if (options.features == nullptr && !surface.is_point_cloud()) {
+    border = find_features(surface, {.creases = Creases::none, .align_border = false}, 0, context);
+  }
+  const FeatureLines& features = options.features != nullptr ? *options.features : border;
+  Smoother smoother(extraction, surface, graph, features, options, context);
   if (options.iterations == 0) return;
   // Even sizes draw the surface's ends in first of all, so that they show early.
   constexpr int parts = 3;

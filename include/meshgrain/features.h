@@ -1,0 +1,50 @@
+#pragma once
+
+#include <vector>
+
+#include "meshgrain/context.h"
+#include "meshgrain/mesh.h"
+
+namespace meshgrain {
+
+/// The lines of a surface that edges of the output follow: its border and its creases.
+struct FeatureLines {
+  /// Vertices of the surface, line after line, in the order in which a line runs. Open lines end at
+  /// corners; a closed one ends with the vertex that it began with.
+  std::vector<Index> vertices;
+  std::vector<Index> starts{0};  ///< Lines + 1: where each begins in `vertices`.
+  std::vector<Vec3> positions;   ///< Where the line runs: one for each of `vertices`.
+  /// For each line, how strongly crosses follow it and how strongly lines of the lattice do, from 0
+  /// (not at all) to 1.
+  std::vector<float> orient, align;
+  /// Vertices where lines end or meet, or turn sharply, in increasing order: they stay.
+  std::vector<Index> corners;
+
+  std::size_t size() const { return starts.size() - 1; }
+  bool empty() const { return vertices.empty(); }
+  Index begin(std::size_t line) const { return starts[line]; }
+  Index end(std::size_t line) const { return starts[line + 1]; }
+  bool is_closed(std::size_t line) const;
+};
+
+enum class Creases {
+  automatic,  ///< Of mechanical parts: edges clearly sharper than all that are meant to be smooth.
+  by_angle,
+  none,
+};
+
+struct FeatureOptions {
+  Creases creases = Creases::automatic;
+  double crease_degrees = 40;  ///< Creases::by_angle: the least angle between the faces' normals.
+  bool align_border = true;    ///< Whether the fields follow the border.
+  /// How strongly orientations and positions are held to creases. Extrinsic energies turn to them
+  /// by themselves, and do better where creases meet at angles that no cross can follow.
+  float orient_creases = 0, align_creases = 1;
+};
+
+/// The feature lines of a triangle mesh. Turns of a line count as corners if they are sharp both
+/// from edge to edge and over `edge_length`, that of the output.
+FeatureLines find_features(const Mesh& triangles, const FeatureOptions& options, double edge_length,
+                           const Context& context = Context());
+
+}  // namespace meshgrain

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "meshgrain/features.h"
+
+namespace meshgrain {
+
+/// How much of its freedom a vertex has lost to feature lines.
+enum Hold : std::uint8_t { free_vertex, on_line, at_corner };
+
+/// Feature lines by the edges and vertices of the surface.
+class FeatureEdges {
+ public:
+  FeatureEdges(const FeatureLines& lines, std::size_t surface_vertices);
+
+  /// The line that the edge between two vertices is part of, or no_index.
+  Index line(Index a, Index b) const;
+  Hold hold(Index vertex) const { return static_cast<Hold>(hold_[vertex]); }
+
+ private:
+  struct Edge {
+    Index low, high, line;
+    auto key() const { return std::array{low, high}; }
+  };
+  std::vector<Edge> edges_;  // sorted
+  std::vector<std::uint8_t> hold_;
+};
+
+}  // namespace meshgrain

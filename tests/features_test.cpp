@@ -1,0 +1,133 @@
+#include "meshgrain/features.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <map>
+
+#include "mesh/border.h"
+#include "meshgrain/remesh.h"
+#include "meshgrain/shapes.h"
+#include "meshgrain/statistics.h"
+#include "meshgrain/surface.h"
+#include "same_topology.h"
+#include "util/triangle.h"
+
+namespace meshgrain {
+namespace {
+
+FeatureLines features_of(const Mesh& mesh, const FeatureOptions& options = {}) {
+  return find_features(mesh, options, 3 * edge_lengths(mesh).mean);
+}
+
+TEST(Features, ACubeHasTwelveLinesAndEightCorners) {
+  const FeatureLines lines = features_of(sample_shape("cube"));
+  EXPECT_EQ(lines.size(), 12u);
+  EXPECT_EQ(lines.corners.size(), 8u);
+  for (std::size_t line = 0; line < lines.size(); ++line) EXPECT_FALSE(lines.is_closed(line));
+}
+
+TEST(Features, ACylinderHasTwoClosedLines) {
+  const FeatureLines lines = features_of(sample_shape("cylinder"));
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_TRUE(lines.corners.empty());
+  EXPECT_TRUE(lines.is_closed(0) && lines.is_closed(1));
+}
+
+TEST(Features, BordersAreLines) {
+  const Mesh plate = sample_shape("plate");
+  const FeatureLines lines = features_of(plate, {.align_border = false});
+  EXPECT_EQ(lines.size(), 4u);
+  EXPECT_EQ(lines.corners.size(), 4u);
+  for (const auto aligned : lines.align) EXPECT_EQ(aligned, 0);
+  EXPECT_EQ(lines.vertices.size(), border_edges(plate).size() + 4);
+}
+
+TEST(Features, CreasesAreChosenByAngle) {
+  const Mesh mesh = sample_shape("bracket");
+  const std::size_t automatic = features_of(mesh).vertices.size();
+  EXPECT_GT(automatic, 100u);
+  EXPECT_EQ(features_of(mesh, {Creases::by_angle, 60}).vertices.size(), automatic);
+  EXPECT_TRUE(features_of(mesh, {Creases::by_angle, 100}).empty());
+  EXPECT_TRUE(features_of(mesh, {Creases::none}).empty());
+}
+
+/// Rounded shapes have none, and noise makes none.
+TEST(Features, NothingIsFoundOnRoundShapes) {
+  for (const char* name : {"sphere", "torus", "blob"}) {
+    EXPECT_TRUE(features_of(sample_shape(name)).empty()) << name;
+  }
+  Mesh mesh = sample_shape("blob");
+  const auto step = static_cast<float>(0.4 * edge_lengths(mesh).mean);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const auto x = static_cast<float>(v);
+    mesh.positions[v] += step * Vec3(std::sin(12.9f * x), std::sin(78.2f * x), std::sin(37.7f * x));
+  }
+  EXPECT_TRUE(features_of(mesh).empty());
+}
+
+struct Kept {
+  double creases = 0;  // share of the length of the input's creases that lies on sharp edges
+  double corners = 0;
+};
+
+/// Measured without any of the code that is tested: points along the input's sharp edges, and how
+/// many have an edge of the output within a tenth of an edge, itself sharp and along the crease.
+Kept measure(const Mesh& input, const Mesh& output) {
+  const auto creases = crease_edges(input, 40), sharp = crease_edges(output, 20);
+  const double tenth = 0.1 * edge_lengths(output).mean;
+  std::map<Index, std::vector<Vec3>> spokes;
+  double kept = 0, length = 0;
+  for (const auto& [a, b] : creases) {
+    const Vec3 &p = input.positions[a], &q = input.positions[b];
+    const Vec3 along = (q - p).normalized(), middle = 0.5f * (p + q);
+    spokes[a].push_back(along);
+    spokes[b].push_back(-along);
+    bool found = false;
+    for (const auto& [c, d] : sharp) {
+      const Vec3 &r = output.positions[c], &s = output.positions[d];
+      found = found || ((closest_point_on_segment<Vec3>(middle, r, s) - middle).norm() < tenth &&
+                        std::abs(along.dot((s - r).normalized())) > 0.94f);
+    }
+    length += (q - p).norm();
+    kept += found ? (q - p).norm() : 0;
+  }
+  std::size_t corners = 0, near = 0;
+  for (const auto& [v, directions] : spokes) {
+    const bool straight = directions.size() == 2 && directions[0].dot(directions[1]) < -0.766f;
+    if (straight) continue;
+    ++corners;
+    double nearest = 1e30;
+    for (const Vec3& p : output.positions) {
+      nearest = std::min<double>(nearest, (p - input.positions[v]).norm());
+    }
+    near += nearest < tenth;
+  }
+  return {kept / length,
+          corners > 0 ? static_cast<double>(near) / static_cast<double>(corners) : 1};
+}
+
+TEST(Features, CreasesAndCornersAreKept) {
+  for (const char* name : {"cube", "cylinder", "bracket", "twisted-cube", "shaft"}) {
+    const Mesh input = sample_shape(name);
+    for (const std::size_t count : {1500, 5000}) {
+      for (const OutputFaces faces :
+           {OutputFaces::quads, OutputFaces::quad_dominant, OutputFaces::triangles}) {
+        SCOPED_TRACE(std::string(name) + " " + std::to_string(count) + " " +
+                     std::to_string(static_cast<int>(faces)));
+        RemeshOptions options;
+        options.faces = faces;
+        options.face_count = count;
+        const Mesh output = remesh(input, options).mesh;
+        made::expect_same_topology(mesh_statistics(output), mesh_statistics(input));
+        const Kept kept = measure(input, output);
+        EXPECT_GE(kept.creases, faces == OutputFaces::triangles ? 0.97 : 0.99);
+        EXPECT_EQ(kept.corners, 1);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace meshgrain
