@@ -92,6 +92,19 @@ void parse_creases(const std::string& text, FeatureOptions& features) {
   }
 }
 
+/// "auto", or axes.
+void parse_symmetry(const std::string& text, Symmetry& symmetry) {
+  symmetry.automatic = text == "auto";
+  if (symmetry.automatic) return;
+  for (const char c : text) {
+    if (c < 'x' || c > 'z') {
+      throw CLI::ValidationError("--symmetry",
+                                 "\"" + text + "\" is neither auto nor axes: x, y, z");
+    }
+    symmetry.axes[static_cast<std::size_t>(c - 'x')] = true;
+  }
+}
+
 constexpr const char* description =
     "Meshgrain turns a mesh or point cloud into a mesh of well-shaped quads, triangles or "
     "hexagons\n"
@@ -177,6 +190,11 @@ void add_options(CLI::App& app, Arguments& a) {
           ->type_name("DEGREES"));
   follow(app.add_flag("-b,--boundaries,!--free-boundaries", o.features.align_border,
                       "follow the border of an open mesh (yes)"));
+  follow(app.add_option_function<std::string>(
+                "--symmetry", [&o](const std::string& text) { parse_symmetry(text, o.symmetry); },
+                "exactly symmetric about planes across x, y, z (xy: both), or auto: about the one "
+                "that suits best")
+             ->type_name("AXES"));
   follow(app.add_option("--curvature", o.curvature.strength,
                         "pull towards the directions of curvature: 0 (off) to 1")
              ->check(refuse_unless_finite)

@@ -47,6 +47,15 @@ Json to_json(const MeshStatistics& s) {
           {"euler", s.euler}};
 }
 
+std::string symmetry(const Symmetry& symmetry) {
+  if (symmetry.automatic) return "auto";
+  std::string axes;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (symmetry.axes[k]) axes += "xyz"[k];
+  }
+  return axes.empty() ? "off" : axes;
+}
+
 Json creases(const FeatureOptions& features) {
   if (features.creases == Creases::by_angle) return features.crease_degrees;
   return features.creases == Creases::automatic ? "auto" : "off";
@@ -100,6 +109,7 @@ Json to_json(const RemeshOptions& o) {
                {"multiresolution", o.solver.multiresolution},
                {"seed", o.solver.seed},
                {"boundaries", o.features.align_border},
+               {"symmetry", symmetry(o.symmetry)},
                {"curvature", o.curvature.strength},
                {"curvature_hard", o.curvature.hard_degrees},
                {"smooth", o.smoothing},

@@ -24,5 +24,6 @@
 #include "meshgrain/sizing.h"
 #include "meshgrain/statistics.h"
 #include "meshgrain/surface.h"
+#include "meshgrain/symmetry.h"
 #include "meshgrain/system.h"
 #include "meshgrain/triangulate.h"

@@ -12,6 +12,7 @@
 #include "meshgrain/graph.h"
 #include "meshgrain/mesh.h"
 #include "meshgrain/sizing.h"
+#include "meshgrain/symmetry.h"
 
 namespace meshgrain {
 
@@ -41,6 +42,9 @@ struct RemeshOptions {
   /// From 0, the best shapes, to 1, the fewest irregular vertices: hardly more than the orientation
   /// field has singularities.
   double regularity = 0.5;
+  /// Of meshes. One half is remeshed, and its mirror image added; RemeshResult::fields are those of
+  /// the half. An input that is not symmetric within one percent of its diagonal stays whole.
+  Symmetry symmetry;
   CurvatureAlignment curvature;
   int smoothing = 72;     ///< Iterations of smooth() (0: only put onto the surface).
   bool manifold = false;  ///< Drop what is not manifold.

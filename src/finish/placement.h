@@ -27,6 +27,8 @@ class Placement {
   /// `end`, or as near as it then is.
   void tether(std::size_t v, const Vec3& p, Index node, const Vec3& end, float radius);
 
+  void fit_lines() { rails_.fit(extraction_.mesh, extraction_.line_edges); }
+
   /// Lets v leave the line that holds it. Returns whether there was one.
   bool release(std::size_t v) { return rails_.release(v, extraction_.nodes[v]); }
 

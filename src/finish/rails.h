@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <span>
 #include <vector>
 
 #include "meshgrain/extract.h"
@@ -21,6 +23,10 @@ class Rails {
   /// The place on its line nearest to `p` that a vertex has; it remembers where that is.
   Vec3 project(const Vec3& p, std::size_t v);
 
+  /// Slides vertices a little along lines that turn sharply between them, to where the edges cut
+  /// off least: ragged borders of scans. `edges` are those that follow lines.
+  void fit(Mesh& mesh, std::span<const LineEdge> edges);
+
   /// Lets a vertex go. Returns whether it was on a line; `node` then gets a vertex there.
   bool release(std::size_t v, Index& node);
 
@@ -35,9 +41,19 @@ class Rails {
  private:
   static constexpr Index stays = no_index - 1;
 
+  /// How far along its line a vertex is, in units of length. For corners: along `line`, at the end
+  /// that is nearest to `from`.
+  double way(Index v, const Mesh& mesh, Index line, double from) const;
+  /// The point so far along a line, and its segment.
+  Vec3 at(Index line, double way, Index& segment) const;
+  /// How far the line lies from the chords between three of its points, at most.
+  float cut_off(Index line, const std::array<double, 3>& ways,
+                const std::array<Vec3, 3>& points) const;
+
   void put_on_line(Index v, Index line, const Extraction& extraction);
 
   const FeatureLines& lines_;
+  std::vector<double> ways_;  // of lines_.vertices, from the beginning of their lines
   // For each vertex the segment that it is on, by the place in lines_.vertices where that begins;
   // `stays`, or no_index.
   std::vector<Index> segment_;

@@ -225,6 +225,7 @@ void Smoother::hold_ends() {
 }
 
 void Smoother::mend() {
+  placement_.fit_lines();
   LocalSearch search(extraction_, around_, placement_);
   untangle(mesh_, around_, search, context_);
   mend_places(mesh_, around_, placement_, search, context_);

@@ -1,0 +1,197 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "mesh/border.h"
+#include "meshgrain/clean.h"
+#include "meshgrain/statistics.h"
+#include "meshgrain/surface.h"
+#include "meshgrain/symmetry.h"
+#include "meshgrain/triangulate.h"
+
+namespace meshgrain {
+namespace {
+
+/// The mean distance of a mesh to its mirror image, over its diagonal.
+double mismatch(const Mesh& mesh, int axis, double offset, const Context& context) {
+  Mesh image = mesh;
+  for (Vec3& p : image.positions) p[axis] = static_cast<float>(2 * offset - p[axis]);
+  constexpr std::size_t samples = 10000;
+  return surface_distance(image, mesh, bounding_diagonal(mesh), samples, context).mean;
+}
+
+double center_of_area(const Mesh& mesh, int axis) {
+  double sum = 0, total = 0;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const double area = face_area(mesh, f);
+    double middle = 0;
+    for (const Index v : mesh.faces[f]) middle += mesh.positions[v][axis];
+    sum += area * middle / static_cast<double>(mesh.faces.degree(f));
+    total += area;
+  }
+  return total > 0 ? sum / total : 0;
+}
+
+/// Faces with all corners on the plane lie between the halves, and in neither.
+Faces keep_faces(const Mesh& mesh, const std::vector<std::uint8_t>& on_plane) {
+  Faces kept;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto face = mesh.faces[f];
+    if (!std::all_of(face.begin(), face.end(), [&](Index v) { return on_plane[v] != 0; })) {
+      kept.push_back(face);
+    }
+  }
+  return kept;
+}
+
+/// Halves edges inside of the mesh that join two vertices of the plane: there the two halves would
+/// meet as well, and more than two faces. Triangles stay triangles.
+void split_chords(Mesh& mesh, std::vector<std::uint8_t>& on_plane) {
+  std::map<std::pair<Index, Index>, int> uses;
+  bool triangles = true;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto face = std::as_const(mesh.faces)[f];
+    triangles = triangles && face.size() == 3;
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const Index a = face[k], b = face[(k + 1) % face.size()];
+      if (on_plane[a] && on_plane[b]) ++uses[std::minmax(a, b)];
+    }
+  }
+  std::map<std::pair<Index, Index>, Index> middles;
+  for (const auto& [edge, count] : uses) {
+    if (count < 2) continue;
+    middles[edge] = static_cast<Index>(mesh.positions.size());
+    mesh.positions.push_back(0.5f * (mesh.positions[edge.first] + mesh.positions[edge.second]));
+    if (!mesh.normals.empty()) mesh.normals.push_back(Vec3(mesh.normals[edge.first]));
+    on_plane.push_back(0);
+  }
+  if (middles.empty()) return;
+  Faces faces;
+  std::vector<Index> corners;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto face = std::as_const(mesh.faces)[f];
+    corners.clear();
+    std::size_t last_added = 0;
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      corners.push_back(face[k]);
+      const auto it = middles.find(std::minmax(face[k], face[(k + 1) % face.size()]));
+      if (it == middles.end()) continue;
+      last_added = corners.size();
+      corners.push_back(it->second);
+    }
+    if (!triangles || corners.size() == 3) {
+      faces.push_back(corners);
+      continue;
+    }
+    std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(last_added),
+                corners.end());
+    for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
+      faces.push_back({corners[0], corners[k], corners[k + 1]});
+    }
+  }
+  mesh.faces = std::move(faces);
+}
+
+}  // namespace
+
+MirrorPlane find_mirror_plane(const Mesh& mesh, int axis, const Context& context) {
+  float low = mesh.positions[0][axis], high = low;
+  for (const Vec3& p : mesh.positions) {
+    low = std::min(low, p[axis]);
+    high = std::max(high, p[axis]);
+  }
+  MirrorPlane best{axis, (static_cast<double>(low) + high) / 2, 0};
+  best.mismatch = mismatch(mesh, axis, best.offset, context);
+  const double center = center_of_area(mesh, axis);
+  const double other = mismatch(mesh, axis, center, context);
+  return other < best.mismatch ? MirrorPlane{axis, center, other} : best;
+}
+
+void cut_at(Mesh& mesh, const MirrorPlane& plane) {
+  const int axis = plane.axis;
+  mesh.origin[axis] += plane.offset;
+  const double tiny = 1e-5 * bounding_diagonal(mesh);
+  for (Vec3& p : mesh.positions) {
+    const double d = p[axis] - plane.offset;
+    p[axis] = std::abs(d) < tiny ? 0 : static_cast<float>(d);
+  }
+  std::map<std::pair<Index, Index>, Index> crossings;
+  const auto cross = [&](Index a, Index b) {
+    const auto [it, is_new] =
+        crossings.try_emplace(std::minmax(a, b), static_cast<Index>(mesh.positions.size()));
+    if (is_new) {
+      std::tie(a, b) = it->first;
+      const float share =
+          mesh.positions[a][axis] / (mesh.positions[a][axis] - mesh.positions[b][axis]);
+      Vec3 p = mesh.positions[a] + share * (mesh.positions[b] - mesh.positions[a]);
+      p[axis] = 0;
+      mesh.positions.push_back(p);
+      if (!mesh.values.empty()) {
+        mesh.values.push_back(mesh.values[a] + share * (mesh.values[b] - mesh.values[a]));
+      }
+    }
+    return it->second;
+  };
+  mesh.normals.clear();  // those of a mesh are its own
+  Faces above;
+  std::vector<Index> corners;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto face = std::as_const(mesh.faces)[f];
+    corners.clear();
+    bool any = false;
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const Index a = face[k], b = face[(k + 1) % face.size()];
+      const float from = mesh.positions[a][axis], to = mesh.positions[b][axis];
+      any = any || from > 0;
+      if (from >= 0) corners.push_back(a);
+      if ((from > 0 && to < 0) || (from < 0 && to > 0)) corners.push_back(cross(a, b));
+    }
+    if (any && corners.size() >= 3) above.push_back(corners);
+  }
+  mesh.faces = std::move(above);
+  mesh = triangulate(mesh);
+  clean(mesh);  // the vertices of the other half
+}
+
+void add_mirror_image(Mesh& mesh, int axis, double near) {
+  std::vector<std::uint8_t> on_plane(mesh.positions.size(), 0);
+  for (const auto& edge : border_edges(mesh)) {
+    for (const Index v : edge) {
+      if (std::abs(mesh.positions[v][axis]) >= near) continue;
+      mesh.positions[v][axis] = 0;
+      on_plane[v] = 1;
+    }
+  }
+  mesh.faces = keep_faces(mesh, on_plane);
+  split_chords(mesh, on_plane);
+  const auto count = static_cast<Index>(mesh.positions.size());
+  std::vector<Index> image(count);
+  for (Index v = 0; v < count; ++v) {
+    if (on_plane[v]) {
+      image[v] = v;
+      if (!mesh.normals.empty()) mesh.normals[v][axis] = 0;
+      continue;
+    }
+    image[v] = static_cast<Index>(mesh.positions.size());
+    Vec3 p = mesh.positions[v];
+    p[axis] = -p[axis];
+    mesh.positions.push_back(p);
+    if (!mesh.normals.empty()) {
+      Vec3 n = mesh.normals[v];
+      n[axis] = -n[axis];
+      mesh.normals.push_back(n);
+    }
+  }
+  const std::size_t faces = mesh.faces.size();
+  std::vector<Index> corners;
+  for (std::size_t f = 0; f < faces; ++f) {
+    const auto face = std::as_const(mesh.faces)[f];
+    corners.assign(face.rbegin(), face.rend());
+    for (Index& v : corners) v = image[v];
+    mesh.faces.push_back(corners);
+  }
+}
+
+}  // namespace meshgrain

@@ -1,0 +1,118 @@
+#include "meshgrain/symmetry.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "meshgrain/error.h"
+#include "meshgrain/remesh.h"
+#include "meshgrain/shapes.h"
+#include "meshgrain/statistics.h"
+#include "same_topology.h"
+
+namespace meshgrain {
+namespace {
+
+/// A blob's half and its mirror image, across x at `offset`.
+Mesh symmetric_blob(float offset) {
+  Mesh mesh = sample_shape("blob", 0.6);
+  cut_at(mesh, {0, 0.1, 0});
+  mesh.origin.setZero();
+  add_mirror_image(mesh, 0, 1e-6);
+  for (Vec3& p : mesh.positions) p.x() += offset;
+  return mesh;
+}
+
+/// Whether each vertex has another, and each face another, where the mirror image of it is;
+/// exactly.
+void expect_symmetric(const Mesh& mesh, int axis) {
+  std::map<std::array<float, 3>, Index> at;
+  for (Index v = 0; v < mesh.positions.size(); ++v) {
+    const Vec3& p = mesh.positions[v];
+    at[{p.x(), p.y(), p.z()}] = v;
+  }
+  ASSERT_EQ(at.size(), mesh.positions.size());
+  std::vector<Index> image;
+  for (Vec3 p : mesh.positions) {
+    p[axis] = -p[axis];
+    const auto it = at.find({p.x(), p.y(), p.z()});
+    ASSERT_NE(it, at.end());
+    image.push_back(it->second);
+  }
+  std::set<std::vector<Index>> faces;
+  std::vector<Index> corners;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    corners.assign(mesh.faces[f].begin(), mesh.faces[f].end());
+    std::sort(corners.begin(), corners.end());
+    faces.insert(corners);
+  }
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    corners.clear();
+    for (const Index v : mesh.faces[f]) corners.push_back(image[v]);
+    std::sort(corners.begin(), corners.end());
+    EXPECT_TRUE(faces.contains(corners));
+  }
+}
+
+TEST(Symmetry, ThePlaneIsFound) {
+  const Mesh mesh = symmetric_blob(3);
+  const MirrorPlane plane = find_mirror_plane(mesh, 0);
+  EXPECT_NEAR(plane.offset, 3, 1e-3);
+  EXPECT_LT(plane.mismatch, 1e-4);
+  EXPECT_GT(find_mirror_plane(mesh, 1).mismatch, 0.01);
+}
+
+TEST(Symmetry, ResultsAreExactlySymmetric) {
+  const Mesh mesh = symmetric_blob(3);
+  for (const OutputFaces faces :
+       {OutputFaces::quads, OutputFaces::quad_dominant, OutputFaces::triangles}) {
+    SCOPED_TRACE(static_cast<int>(faces));
+    RemeshOptions options;
+    options.faces = faces;
+    options.face_count = 1000;
+    options.symmetry.automatic = true;
+    const RemeshResult result = remesh(mesh, options);
+    expect_symmetric(result.mesh, 0);
+    EXPECT_NEAR(result.mesh.origin.x(), 3, 1e-3);
+    const MeshStatistics s = mesh_statistics(result.mesh);
+    made::expect_same_topology(s, mesh_statistics(mesh));
+    EXPECT_NEAR(static_cast<double>(s.faces), 1000, 20);
+    EXPECT_EQ(result.report.input_vertices, mesh.positions.size());
+    EXPECT_LT(surface_distance(result.mesh, mesh, bounding_diagonal(mesh)).mean, 2e-3);
+  }
+}
+
+TEST(Symmetry, SeveralPlanesAtOnce) {
+  const Mesh mesh = sample_shape("torus");
+  RemeshOptions options;
+  options.face_count = 800;
+  options.symmetry.axes = {true, true, true};
+  const Mesh result = remesh(mesh, options).mesh;
+  for (const int axis : {0, 1, 2}) expect_symmetric(result, axis);
+  made::expect_same_topology(mesh_statistics(result), mesh_statistics(mesh));
+}
+
+/// The result is that without the option, and says why.
+TEST(Symmetry, WhatIsNotSymmetricStaysWhole) {
+  const Mesh mesh = symmetric_blob(0);
+  RemeshOptions options;
+  options.face_count = 500;
+  const Mesh plain = remesh(mesh, options).mesh;
+  options.symmetry.axes[1] = true;
+  const RemeshResult result = remesh(mesh, options);
+  EXPECT_EQ(result.mesh.positions, plain.positions);
+  EXPECT_EQ(result.report.notes, std::vector<std::string>{"not symmetric across y"});
+}
+
+TEST(Symmetry, NeedsAMesh) {
+  Mesh cloud = sample_shape("blob", 0.3);
+  cloud.faces.clear();
+  RemeshOptions options;
+  options.symmetry.automatic = true;
+  EXPECT_THROW(remesh(cloud, options), Error);
+}
+
+}  // namespace
+}  // namespace meshgrain
