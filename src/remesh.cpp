@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "extract/reduce_faces.h"
+#include "extract/remove_strips.h"
 #include "field/transfer.h"
 #include "mesh/border.h"
 #include "mesh/frame.h"
@@ -199,16 +200,33 @@ class Pipeline {
     }
     const double ratio = target_.count_ratio(extraction_.mesh);
     if (ratio > 1 + tolerance && ratio < 1.2) {
-      stage_("extraction", [&] {
-        reduce_faces(extraction_, posy_of(options_.faces),
-                     target_.faces_to_close(extraction_.mesh, tolerance), context_);
-      });
+      stage_("extraction", [&] { take_away_faces(tolerance); });
     }
     if (extraction_.mesh.faces.empty()) {
       throw Error(
           "nothing is left of the surface at this target: ask for more faces, or shorter edges");
     }
     result_.report.edge_length = fields().position.edge_length[0] * frame_.scale;
+  }
+
+  /// Whole strips if that can be, else single faces.
+  void take_away_faces(double tolerance) {
+    if (options_.faces == OutputFaces::quads) {
+      Extraction quads = extraction_;
+      split_into_quads(quads);
+      const auto count = static_cast<double>(quads.mesh.faces.size());
+      const double wanted = count / target_.count_ratio(extraction_.mesh);
+      constexpr double one_percent = 0.0099;  // strips are long: all that may be
+      const auto least = static_cast<std::size_t>(std::ceil(count - (1 + one_percent) * wanted));
+      const auto most = static_cast<std::size_t>(count - (1 - one_percent) * wanted);
+      if (remove_strips(quads, least, most)) {
+        extraction_ = std::move(quads);
+        is_split_ = true;
+        return;
+      }
+    }
+    reduce_faces(extraction_, posy_of(options_.faces),
+                 target_.faces_to_close(extraction_.mesh, tolerance), context_);
   }
 
   void count_singularities() {
@@ -226,7 +244,7 @@ class Pipeline {
 
   void smooth_faces() {
     stage_("smoothing", [&] {
-      if (options_.faces == OutputFaces::quads) split_into_quads(extraction_);
+      if (options_.faces == OutputFaces::quads && !is_split_) split_into_quads(extraction_);
       SmoothOptions smoothing;
       smoothing.iterations = options_.smoothing;
       // The more regular, the more the grid must stretch. Triangles of one size are regular; the
@@ -332,6 +350,7 @@ class Pipeline {
   FeatureLines features_;
   FeatureConstraints constraints_;
   Extraction extraction_;
+  bool is_split_ = false;  // into the quads that are written
 };
 
 }  // namespace

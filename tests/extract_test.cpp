@@ -57,6 +57,22 @@ TEST(Extract, PureQuadsOfAPlateAreItsGridToo) {
   EXPECT_EQ(s.irregular_vertices, 0u);
 }
 
+/// Where the lattice misses the count, rows and columns are taken out until it is met.
+TEST(Extract, APlateOfAnotherCountIsAGridToo) {
+  for (const std::size_t count : {2100, 5000, 7777}) {
+    SCOPED_TRACE(count);
+    RemeshOptions options;
+    options.face_count = count;
+    const MeshStatistics s = mesh_statistics(remesh(sample_shape("plate"), options).mesh);
+    const auto wanted = static_cast<double>(count);
+    EXPECT_NEAR(static_cast<double>(s.faces), wanted, 0.01 * wanted);
+    EXPECT_EQ(s.irregular_vertices, 0u);
+    EXPECT_EQ(s.euler, 1);
+    EXPECT_EQ(s.boundary_loops, 1u);
+    EXPECT_LT(s.area_sigma, 0.05);
+  }
+}
+
 /// A surface with a parametrization of whole cells along both axes.
 struct Parametrized {
   Mesh mesh;
