@@ -18,8 +18,10 @@
 #include "meshgrain/singularities.h"
 #include "meshgrain/surface.h"
 #include "meshgrain/triangulate.h"
+#include "remesh/notes.h"
 #include "remesh/stages.h"
 #include "remesh/target.h"
+#include "symmetry/remesh_symmetric.h"
 
 namespace meshgrain {
 namespace {
@@ -42,19 +44,6 @@ void check(const RemeshOptions& options) {
   }
   if (options.smoothing < 0) throw Error("the number of smoothing iterations must not be negative");
   if (options.solver.sweeps < 1) throw Error("at least one sweep a level is needed");
-}
-
-std::vector<std::string> describe(const CleanReport& cleaned) {
-  std::vector<std::string> notes;
-  const auto note = [&](std::size_t count, const char* what) {
-    if (count > 0) notes.push_back("removed " + std::to_string(count) + " " + what);
-  };
-  note(cleaned.repeated_corners, "repeated corners of faces");
-  note(cleaned.degenerate_faces, "degenerate faces");
-  note(cleaned.duplicate_faces, "duplicate faces");
-  note(cleaned.unused_vertices, "vertices that no face uses");
-  note(cleaned.duplicate_points, "duplicate points");
-  return notes;
 }
 
 /// Pairs of neighbouring faces that both touch the border.
@@ -219,7 +208,7 @@ class Pipeline {
       constexpr double one_percent = 0.0099;  // strips are long: all that may be
       const auto least = static_cast<std::size_t>(std::ceil(count - (1 + one_percent) * wanted));
       const auto most = static_cast<std::size_t>(count - (1 - one_percent) * wanted);
-      if (remove_strips(quads, least, most)) {
+      if (remove_strips(quads, least, most, context_)) {
         extraction_ = std::move(quads);
         is_split_ = true;
         return;
@@ -352,64 +341,6 @@ class Pipeline {
   Extraction extraction_;
   bool is_split_ = false;  // into the quads that are written
 };
-
-}  // namespace
-
-namespace {
-
-/// The planes about which the input is symmetric, of those that are asked for.
-std::vector<MirrorPlane> find_symmetry(const Mesh& input, const Symmetry& symmetry,
-                                       std::vector<std::string>& notes, const Context& context) {
-  constexpr double tolerance = 0.01;  // of the diagonal, for the mean distance to the mirror image
-  std::vector<MirrorPlane> planes;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!symmetry.automatic && !symmetry.axes[axis]) continue;
-    const MirrorPlane plane = find_mirror_plane(input, axis, context);
-    if (plane.mismatch <= tolerance) {
-      planes.push_back(plane);
-    } else if (symmetry.axes[axis]) {
-      notes.push_back(std::string("not symmetric across ") + "xyz"[axis]);
-    }
-  }
-  if (!symmetry.automatic) return planes;
-  const auto less = [](const MirrorPlane& a, const MirrorPlane& b) {
-    return a.mismatch < b.mismatch;
-  };
-  // One is enough: every plane is one more line that edges must follow.
-  const auto best = std::min_element(planes.begin(), planes.end(), less);
-  if (best != planes.end()) return {*best};
-  notes.push_back("not symmetric across x, y or z");
-  return {};
-}
-
-RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const Context& context) {
-  if (input.is_point_cloud()) throw Error("symmetry needs a mesh: the input is a point cloud");
-  if (options.faces == OutputFaces::hexagons) throw Error("hexagons cannot be made symmetric");
-  std::vector<std::string> notes;
-  clean(input);
-  const std::size_t vertices = input.positions.size(), faces = input.faces.size();
-  const auto planes = find_symmetry(input, options.symmetry, notes, context);
-  options.symmetry = {};
-  if (options.edge_length == 0 && options.face_count == 0 && options.vertex_count == 0) {
-    options.vertex_count = std::max<std::size_t>(input.positions.size() / 16, 1);
-  }
-  if (!planes.empty()) input = triangulate(input);
-  for (const MirrorPlane& plane : planes) {
-    cut_at(input, plane);
-    options.face_count = (options.face_count + 1) / 2;
-    options.vertex_count = (options.vertex_count + 1) / 2;
-    options.sizing.point[plane.axis] = std::abs(options.sizing.point[plane.axis]);
-  }
-  RemeshResult result = remesh(std::move(input), options, context);
-  for (const MirrorPlane& plane : planes) {
-    add_mirror_image(result.mesh, plane.axis, 0.2 * edge_lengths(result.mesh).mean);
-    notes.push_back(std::string("made symmetric across ") + "xyz"[plane.axis]);
-  }
-  result.report.input_vertices = vertices;
-  result.report.input_faces = faces;
-  result.report.notes.insert(result.report.notes.end(), notes.begin(), notes.end());
-  return result;
-}
 
 }  // namespace
 

@@ -399,6 +399,7 @@ TEST_F(Cli, WrongUsageIsRefused) {
   refused("-s inf", "--scale");
   refused("-c nan", "--crease");
   refused("--symmetry w", "--symmetry");
+  refused("--symmetry ''", "--symmetry");
   refused("-c 181", "--crease");
   refused("-c sharp", "auto, off");
   refused("-p 5", "--posy");

@@ -106,6 +106,49 @@ TEST(Symmetry, WhatIsNotSymmetricStaysWhole) {
   EXPECT_EQ(result.report.notes, std::vector<std::string>{"not symmetric across y"});
 }
 
+/// Where faces are to be small near a point, the point's mirror image does as well.
+TEST(Symmetry, ThePointOfASizingMayLieOnEitherSide) {
+  const Mesh mesh = symmetric_blob(3);
+  RemeshOptions options;
+  options.face_count = 600;
+  options.symmetry.axes[0] = true;
+  options.sizing.kind = Sizing::Kind::distance;
+  options.sizing.point = {4, 0, 0};
+  const Mesh near = remesh(mesh, options).mesh;
+  options.sizing.point = {2, 0, 0};
+  const Mesh other = remesh(mesh, options).mesh;
+  const auto distance = surface_distance(near, other, bounding_diagonal(mesh));
+  EXPECT_LT(distance.max, 5e-3);
+  EXPECT_NEAR(static_cast<double>(near.faces.size()), 600, 12);
+  EXPECT_GT(mesh_statistics(near).area_sigma, 0.3);
+  EXPECT_NEAR(mesh_statistics(near).area_sigma, mesh_statistics(other).area_sigma, 0.05);
+}
+
+/// What was mended of the input is told, as without symmetry.
+TEST(Symmetry, TellsWhatWasMended) {
+  Mesh mesh = symmetric_blob(0);
+  mesh.faces.push_back({mesh.faces[0][0], mesh.faces[0][0], mesh.faces[0][1]});
+  RemeshOptions options;
+  options.face_count = 400;
+  const std::vector<std::string> plain = remesh(mesh, options).report.notes;
+  options.symmetry.automatic = true;
+  std::vector<std::string> notes = remesh(mesh, options).report.notes;
+  ASSERT_FALSE(notes.empty());
+  EXPECT_EQ(notes.back(), "made symmetric across x");
+  notes.pop_back();
+  EXPECT_EQ(notes, plain);
+  EXPECT_FALSE(plain.empty());
+}
+
+TEST(Symmetry, NeedsASurface) {
+  Mesh mesh;
+  mesh.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0)};
+  mesh.faces.push_back({0, 1, 0});
+  RemeshOptions options;
+  options.symmetry.automatic = true;
+  EXPECT_THROW(remesh(mesh, options), Error);
+}
+
 TEST(Symmetry, NeedsAMesh) {
   Mesh cloud = sample_shape("blob", 0.3);
   cloud.faces.clear();

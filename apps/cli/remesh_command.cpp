@@ -96,11 +96,10 @@ void parse_creases(const std::string& text, FeatureOptions& features) {
 void parse_symmetry(const std::string& text, Symmetry& symmetry) {
   symmetry.automatic = text == "auto";
   if (symmetry.automatic) return;
+  if (text.empty() || text.find_first_not_of("xyz") != text.npos) {
+    throw CLI::ValidationError("--symmetry", "\"" + text + "\" is neither auto nor axes: x, y, z");
+  }
   for (const char c : text) {
-    if (c < 'x' || c > 'z') {
-      throw CLI::ValidationError("--symmetry",
-                                 "\"" + text + "\" is neither auto nor axes: x, y, z");
-    }
     symmetry.axes[static_cast<std::size_t>(c - 'x')] = true;
   }
 }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 
 #include "meshgrain/context.h"
 #include "meshgrain/mesh.h"

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "field/jumps.h"
+#include "util/sort_unique.h"
 
 namespace meshgrain {
 namespace {
@@ -133,11 +134,6 @@ void merge_clusters(const std::vector<Merge>& merges, const UnitEdges& units, Di
   }
 }
 
-void sort_unique(std::vector<std::array<Index, 2>>& edges) {
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-}
-
 }  // namespace
 
 Clusters average_clusters(const Graph& graph, const PositionField& position,
@@ -148,9 +144,9 @@ Clusters average_clusters(const Graph& graph, const PositionField& position,
   result.positions.assign(count, Vec3::Zero());
   result.normals.assign(count, Vec3::Zero());
   result.on_border.assign(count, 0);
-  result.hold.assign(count, 0);
   result.cover.assign(count, 0);
   std::vector<float> weight(count, 0);
+  std::vector<std::uint8_t> most_held(count, 0);
   for (std::size_t m = 0; m < nodes.size(); ++m) {
     const Index c = cluster_of[m], i = nodes[m];
     if (c == no_index) continue;
@@ -163,7 +159,7 @@ Clusters average_clusters(const Graph& graph, const PositionField& position,
     result.normals[c] += alpha * graph.normals[i];
     weight[c] += alpha;
     result.on_border[c] |= border[m];
-    result.hold[c] = std::max(result.hold[c], hold[m]);
+    most_held[c] = std::max(most_held[c], hold[m]);
     const float rho = position.edge_length[i];
     result.cover[c] += graph.areas[i] / (rho * rho);
   }
@@ -181,7 +177,7 @@ Clusters average_clusters(const Graph& graph, const PositionField& position,
   std::vector<float> nearest(count, 0);
   for (std::size_t m = 0; m < nodes.size(); ++m) {
     const Index c = cluster_of[m], i = nodes[m];
-    if (c == no_index || hold[m] < result.hold[c]) continue;
+    if (c == no_index || hold[m] < most_held[c]) continue;
     const float distance = (graph.positions[i] - result.positions[c]).squaredNorm();
     if (result.nodes[c] == no_index || distance < nearest[c]) {
       nearest[c] = distance;

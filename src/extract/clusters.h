@@ -18,7 +18,7 @@ struct Clusters {
   std::vector<std::array<Index, 2>> edges;  // sorted, first < second
   std::vector<std::array<Index, 2>> border;  // those of the edges that lie on the border, sorted
   std::vector<std::uint8_t> on_border;       // whether a cluster has nodes on the border
-  std::vector<std::uint8_t> hold;            // the most that one of its nodes is held (Hold)
+  std::vector<std::uint8_t> hold;            // how each is held (Hold); for whoever has features
 };
 
 /// Positions, normals and nearest nodes of `count` clusters (section 3.8). Member m is node

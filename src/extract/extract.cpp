@@ -165,6 +165,7 @@ Extraction extract_from_mesh(const Graph& graph, const OrientationField& orienta
   repair_lattice(lattice);
   cancel_position_singularities(lattice, options.cancelling_cost);
   repair_lattice(lattice);
+  lattice.clusters.hold = std::move(lattice.hold);
   FaceRepair repair(lattice.map, lattice.clusters, position.posy, std::move(lattice.holes),
                     std::move(lattice.lines));
   if (position.posy == 4) repair.remove_diagonals(lattice.jumps);

@@ -85,7 +85,11 @@ void FaceRepair::part_straight_angles() {
       const bool fixed = hole_[beyond] || line(across) != no_index || is_last_rung(across) ||
                          is_last_rung(beyond) || map_.valence(map_.origin(across)) <= 3 ||
                          map_.valence(map_.target(across)) <= 3 || touches_itself(across);
-      if (fixed) continue;
+      bool has_goal = false;
+      for (Index g = map_.next(map_.next(beyond)); g != beyond; g = map_.next(g)) {
+        has_goal = has_goal || !map_.adjacent(map_.origin(h), map_.origin(g));
+      }
+      if (fixed || !has_goal) continue;
       map_.remove_edge(across);
     }
     // To where the two parts are best.

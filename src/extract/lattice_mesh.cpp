@@ -121,7 +121,6 @@ void LatticeMesh::add_vertex(Index like, const Vec3& position, bool on_border, H
   clusters.nodes.push_back(clusters.nodes[like]);
   clusters.cover.push_back(0);
   clusters.on_border.push_back(on_border);
-  clusters.hold.push_back(held);
   hold.push_back(held);
   directions_.push_back(directions_[like]);
   lengths_.push_back(lengths_[like]);

@@ -18,12 +18,8 @@ class Collapse {
   Collapse(const Mesh& surface, const FeatureLines& features, const Graph& graph,
            const OrientationField& orientation, const PositionField& position,
            PositionEnergy energy, const Context& context)
-      : graph_(graph), orientation_(orientation), position_(position), lattice_{position.posy,
-                                                                                {},
-                                                                                {},
-                                                                                {},
-                                                                                {},
-                                                                                {}} {
+      : graph_(graph), orientation_(orientation), position_(position) {
+    lattice_.posy = position.posy;
     lattice_.map = PolygonMap(surface, sources_, holes_, context);
     merged_into_.resize(map_.vertices());
     std::iota(merged_into_.begin(), merged_into_.end(), Index{0});

@@ -7,6 +7,7 @@
 
 #include "extract/collect_faces.h"
 #include "extract/face_repair.h"
+#include "extract/line_edges.h"
 
 namespace meshgrain {
 namespace {
@@ -44,9 +45,7 @@ std::size_t reduce_faces(Extraction& extraction, int posy, std::size_t count,
   for (Index h = 0; h < map.halfedges(); ++h) {
     if (holes[h]) clusters.on_border[map.origin(h)] = 1;
   }
-  clusters.hold.assign(sources.size(), free_vertex);
-  for (const LineEdge& e : extraction.line_edges) clusters.hold[e.a] = clusters.hold[e.b] = on_line;
-  for (const Index v : extraction.corners) clusters.hold[v] = at_corner;
+  clusters.hold = held_vertices(extraction);
   FaceRepair repair(map, clusters, posy, std::move(holes), lines_of_edges(extraction, map));
   const std::size_t done = posy == 4 ? repair.close_quads(count) : repair.contract_edges(count);
   std::vector<Index> vertex;

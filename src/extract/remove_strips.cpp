@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "extract/drop_unused.h"
-#include "features/feature_edges.h"
+#include "extract/line_edges.h"
 
 namespace meshgrain {
 namespace {
@@ -32,7 +32,7 @@ class Strips {
  public:
   explicit Strips(const Extraction& extraction)
       : mesh_(extraction.mesh),
-        hold_(mesh_.positions.size(), free_vertex),
+        hold_(held_vertices(extraction)),
         valence_(mesh_.positions.size(), 0),
         on_border_(mesh_.positions.size(), 0) {
     for (Index f = 0; f < mesh_.faces.size(); ++f) {
@@ -50,11 +50,7 @@ class Strips {
         if (sides[1] == no_index) on_border_[v] = 1;
       }
     }
-    for (const auto& [a, b, line] : extraction.line_edges) {
-      line_edges_[edge_of(a, b)] = line;
-      hold_[a] = hold_[b] = on_line;
-    }
-    for (const Index v : extraction.corners) hold_[v] = at_corner;
+    for (const LineEdge& edge : extraction.line_edges) line_edges_.insert(edge_of(edge.a, edge.b));
     // The border is a line even where no feature says so.
     for (std::size_t v = 0; v < hold_.size(); ++v) {
       if (on_border_[v] && hold_[v] == free_vertex) hold_[v] = on_line;
@@ -173,13 +169,13 @@ class Strips {
         if (++uses[edge_of(corners[k], corners[(k + 1) % 4])] > 2) return false;
       }
     }
-    return uses.size() > 0;
+    return !uses.empty();
   }
 
   const Mesh& mesh_;
   bool manifold_ = true;
   std::map<Edge, Sides> sides_;
-  std::map<Edge, Index> line_edges_;
+  std::set<Edge> line_edges_;
   std::vector<std::uint8_t> hold_;
   std::vector<std::size_t> valence_;
   std::vector<std::uint8_t> on_border_;
@@ -216,9 +212,11 @@ void remove(Extraction& extraction, const Strips& strips, const Strip& strip) {
 
 }  // namespace
 
-bool remove_strips(Extraction& extraction, std::size_t least, std::size_t most) {
+bool remove_strips(Extraction& extraction, std::size_t least, std::size_t most,
+                   const Context& context) {
   Extraction reduced = extraction;
   for (std::size_t done = 0; done < least;) {
+    context.check();
     const Strips strips(reduced);
     if (!strips.is_manifold()) return false;
     const std::optional<Strip> best = strips.narrowest(most - done);

@@ -9,6 +9,7 @@ namespace meshgrain {
 /// not: a grid stays a grid. Features stay, and so does the topology. Does so until `least` to
 /// `most` faces are gone, the narrowest strips first, or leaves the mesh as it was, as it does
 /// where edges have more than two faces. Returns whether it could.
-bool remove_strips(Extraction& extraction, std::size_t least, std::size_t most);
+bool remove_strips(Extraction& extraction, std::size_t least, std::size_t most,
+                   const Context& context);
 
 }  // namespace meshgrain

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "mesh/border.h"
@@ -13,32 +14,39 @@ namespace {
 
 using Edge = std::array<Index, 2>;
 
-double total_length(const Mesh& mesh, const std::vector<Edge>& edges) {
-  double sum = 0;
-  for (const auto& [a, b] : edges) sum += (mesh.positions[a] - mesh.positions[b]).norm();
-  return sum;
-}
-
 /// The creases of a mechanical part; nothing for a sculpture or a scan, whose sharp edges are
 /// detail or noise. Told by the length of edges of every sharpness: in a part they are either
 /// nearly flat or creases, with little in between.
 std::vector<Edge> mechanical_creases(const Mesh& mesh, const Context& context) {
   constexpr double sharp = 40, flat = 10;  // degrees
-  const double creases = total_length(mesh, crease_edges(mesh, sharp, context));
-  if (creases == 0) return {};
-  const double between = total_length(mesh, crease_edges(mesh, flat, context)) - creases;
-  if (creases <= between) return {};
+  const std::vector<SharpEdge> edges = sharp_edges(mesh, flat, context);
+  const auto is_above = [](const SharpEdge& edge, double degrees) {
+    return edge.cosine < std::cos(degrees * std::numbers::pi / 180);
+  };
+  const auto length_above = [&](double degrees) {
+    double sum = 0;
+    for (const SharpEdge& edge : edges) {
+      const auto [a, b] = edge.ends;
+      if (is_above(edge, degrees)) sum += (mesh.positions[a] - mesh.positions[b]).norm();
+    }
+    return sum;
+  };
+  const double creases = length_above(sharp);
+  if (creases <= length_above(flat) - creases) return {};
   // The threshold is where it matters least.
-  double best = sharp, least = std::numeric_limits<double>::infinity();
+  double threshold = sharp, least = std::numeric_limits<double>::infinity();
   constexpr double lowest = 20, window = 1.25, step = 2;
   for (double degrees = sharp; degrees >= lowest; degrees -= step) {
-    const double doubtful = total_length(mesh, crease_edges(mesh, degrees / window, context)) -
-                            total_length(mesh, crease_edges(mesh, degrees * window, context));
+    const double doubtful = length_above(degrees / window) - length_above(degrees * window);
     if (doubtful >= least) continue;
     least = doubtful;
-    best = degrees;
+    threshold = degrees;
   }
-  return crease_edges(mesh, best, context);
+  std::vector<Edge> result;
+  for (const SharpEdge& edge : edges) {
+    if (is_above(edge, threshold)) result.push_back(edge.ends);
+  }
+  return result;
 }
 
 /// Joins edges to lines that end at corners.

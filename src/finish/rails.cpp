@@ -19,33 +19,38 @@ Rails::Rails(const Extraction& extraction, const FeatureLines& lines)
       ways_[k] = ways_[k - 1] + (lines.positions[k] - lines.positions[k - 1]).norm();
     }
   }
+  // Where each vertex of the surface is among those of the lines: of a corner, one such place.
+  std::vector<Index> entry_of;
+  for (Index k = 0; k < lines.vertices.size(); ++k) {
+    const Index v = lines.vertices[k];
+    if (v >= entry_of.size()) entry_of.resize(v + 1 + v / 8, no_index);
+    if (entry_of[v] == no_index) entry_of[v] = k;
+  }
+  const auto entry = [&](Index v) {
+    const Index node = extraction.nodes[v];
+    return node < entry_of.size() ? entry_of[node] : no_index;
+  };
   for (const auto& [a, b, line] : extraction.line_edges) {
-    put_on_line(a, line, extraction);
-    put_on_line(b, line, extraction);
+    for (const Index v : {a, b}) put_on_line(v, line, entry(v), extraction.mesh.positions[v]);
   }
   for (const Index v : extraction.corners) segment_[v] = stays;
   // The border of a mesh that was not made along lines.
-  std::vector<Index> line_of(
-      lines.vertices.empty() ? 0
-                             : 1 + *std::max_element(lines.vertices.begin(), lines.vertices.end()),
-      no_index);
-  for (Index line = 0; line < lines.size(); ++line) {
-    for (Index k = lines.begin(line); k < lines.end(line); ++k) line_of[lines.vertices[k]] = line;
-  }
   for (const auto& [a, b] : rim_edges(extraction.mesh)) {
     for (const Index v : {a, b}) {
       if (!is_free(v)) continue;
-      const Index node = extraction.nodes[v];
-      if (node < line_of.size() && line_of[node] != no_index) {
-        put_on_line(v, line_of[node], extraction);
-      } else {
+      const Index at = entry(v);
+      if (at == no_index) {
         segment_[v] = stays;
+        continue;
       }
+      const auto after = std::upper_bound(lines.starts.begin(), lines.starts.end(), at);
+      const auto line = static_cast<Index>(after - lines.starts.begin()) - 1;
+      put_on_line(v, line, at, extraction.mesh.positions[v]);
     }
   }
 }
 
-void Rails::put_on_line(Index v, Index line, const Extraction& extraction) {
+void Rails::put_on_line(Index v, Index line, Index entry, const Vec3& p) {
   if (line_[v] == line) return;
   if (line_[v] != no_index) {  // where pieces meet: on two lines, but at no corner
     segment_[v] = stays;
@@ -53,19 +58,17 @@ void Rails::put_on_line(Index v, Index line, const Extraction& extraction) {
   }
   line_[v] = line;
   const Index begin = lines_.begin(line), end = lines_.end(line);
-  const auto at = lines_.vertices.begin();
-  const auto found = std::find(at + begin, at + end, extraction.nodes[v]);
-  const Vec3& p = extraction.mesh.positions[v];
-  segment_[v] = std::min(found == at + end ? begin : static_cast<Index>(found - at), end - 2);
-  // A line may end where it begins, or the node may not be its own: the nearer end then.
-  if (found == at + end || found == at + begin) {
-    const auto distance = [&](Index segment) {
-      segment_[v] = segment;
-      const float d = (project(p, v) - p).norm();
-      return std::pair(d, segment_[v]);
-    };
-    segment_[v] = std::min(distance(begin), distance(end - 2)).second;
+  if (entry > begin && entry + 1 < end) {
+    segment_[v] = entry;
+    return;
   }
+  // At a corner, or the node is not the line's own: whichever end of the line is nearer.
+  const auto distance = [&](Index segment) {
+    segment_[v] = segment;
+    const float d = (project(p, v) - p).norm();
+    return std::pair(d, segment_[v]);
+  };
+  segment_[v] = std::min(distance(begin), distance(end - 2)).second;
 }
 
 Vec3 Rails::project(const Vec3& p, std::size_t v) {
@@ -107,7 +110,6 @@ Vec3 Rails::project(const Vec3& p, std::size_t v) {
 double Rails::way(Index v, const Mesh& mesh, Index line, double from) const {
   const Index begin = lines_.begin(line), last = lines_.end(line) - 1;
   const double length = ways_[last];
-  double result;
   if (is_fixed(v)) {
     const Vec3& p = mesh.positions[v];
     const float to_begin = (p - lines_.positions[begin]).norm();
@@ -115,12 +117,9 @@ double Rails::way(Index v, const Mesh& mesh, Index line, double from) const {
     if (to_begin == to_end) return from < length / 2 ? 0 : length;
     return to_begin < to_end ? 0 : length;
   }
-  result = ways_[segment_[v]] + (mesh.positions[v] - lines_.positions[segment_[v]]).norm();
-  if (lines_.is_closed(line)) {
-    while (result - from > length / 2) result -= length;
-    while (from - result > length / 2) result += length;
-  }
-  return result;
+  const double result =
+      ways_[segment_[v]] + (mesh.positions[v] - lines_.positions[segment_[v]]).norm();
+  return lines_.is_closed(line) ? from + std::remainder(result - from, length) : result;
 }
 
 Vec3 Rails::at(Index line, double way, Index& segment) const {
@@ -141,9 +140,9 @@ float Rails::cut_off(Index line, const std::array<double, 3>& ways,
   Index segment = 0;
   at(line, ways[0], segment);
   const Index begin = lines_.begin(line), last = lines_.end(line) - 1;
-  double turn = ways[0] - ways_[segment];  // whole rounds of a closed line
   const double length = ways_[last];
-  turn = lines_.is_closed(line) ? std::round(turn / length) * length : 0;
+  const double rounds = lines_.is_closed(line) ? (ways[0] - ways_[segment]) / length : 0;
+  double turn = std::round(rounds) * length;
   for (Index k = segment + 1;; ++k) {
     if (k > last) {
       k = begin;
@@ -170,39 +169,46 @@ void Rails::fit(Mesh& mesh, std::span<const LineEdge> edges) {
   const auto edge =
       static_cast<float>(total / static_cast<double>(std::max<std::size_t>(edges.size(), 1)));
   const float tolerated = 0.06f * edge;
-  constexpr std::size_t sweeps = 3;
-  for (std::size_t visit = 0; visit < sweeps * beside.size(); ++visit) {
-    const auto v = static_cast<Index>(visit % beside.size());
-    if (beside[v][1] == no_index || is_free(beside[v][0]) || is_free(beside[v][1])) continue;
-    const Index line = line_[v];
-    const double own = way(v, mesh, line, 0);
-    std::array<Index, 2> ends = beside[v];
-    std::array<double, 2> ways{way(ends[0], mesh, line, own), way(ends[1], mesh, line, own)};
-    if (ways[0] > ways[1]) {
-      std::swap(ends[0], ends[1]);
-      std::swap(ways[0], ways[1]);
+  std::vector<Index> between;  // two others of their line
+  for (Index v = 0; v < beside.size(); ++v) {
+    if (beside[v][1] != no_index && !is_free(beside[v][0]) && !is_free(beside[v][1])) {
+      between.push_back(v);
     }
-    if (!(ways[0] < own && own < ways[1])) continue;
-    const auto cost = [&](double to, const Vec3& p) {
-      return cut_off(line, {ways[0], to, ways[1]},
-                     {mesh.positions[ends[0]], p, mesh.positions[ends[1]]});
-    };
-    float least = cost(own, mesh.positions[v]);
-    if (least < tolerated) continue;
-    least -= tolerated / 3;  // what it must gain
-    Vec3 best = mesh.positions[v];
-    for (const double step : {-0.3, -0.2, -0.1, -0.05, 0.05, 0.1, 0.2, 0.3}) {
-      const double to = own + step * (step < 0 ? own - ways[0] : ways[1] - own);
-      Index segment = 0;
-      const Vec3 p = at(line, to, segment);
-      const float c = cost(to, p);
-      if (c >= least) continue;
-      least = c;
-      best = p;
-      segment_[v] = segment;
-    }
-    mesh.positions[v] = best;
   }
+  constexpr int sweeps = 3;
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    for (const Index v : between) fit_between(v, beside[v], tolerated, mesh);
+  }
+}
+
+void Rails::fit_between(Index v, std::array<Index, 2> ends, float tolerated, Mesh& mesh) {
+  const Index line = line_[v];
+  const double own = way(v, mesh, line, 0);
+  std::array<double, 2> ways{way(ends[0], mesh, line, own), way(ends[1], mesh, line, own)};
+  if (ways[0] > ways[1]) {
+    std::swap(ends[0], ends[1]);
+    std::swap(ways[0], ways[1]);
+  }
+  if (!(ways[0] < own && own < ways[1])) return;
+  const auto cost = [&](double to, const Vec3& p) {
+    return cut_off(line, {ways[0], to, ways[1]},
+                   {mesh.positions[ends[0]], p, mesh.positions[ends[1]]});
+  };
+  float least = cost(own, mesh.positions[v]);
+  if (least < tolerated) return;
+  least -= tolerated / 3;  // what it must gain
+  Vec3 best = mesh.positions[v];
+  for (const double step : {-0.3, -0.2, -0.1, -0.05, 0.05, 0.1, 0.2, 0.3}) {
+    const double to = own + step * (step < 0 ? own - ways[0] : ways[1] - own);
+    Index segment = 0;
+    const Vec3 p = at(line, to, segment);
+    const float c = cost(to, p);
+    if (c >= least) continue;
+    least = c;
+    best = p;
+    segment_[v] = segment;
+  }
+  mesh.positions[v] = best;
 }
 
 bool Rails::release(std::size_t v, Index& node) {

@@ -50,7 +50,10 @@ class Rails {
   float cut_off(Index line, const std::array<double, 3>& ways,
                 const std::array<Vec3, 3>& points) const;
 
-  void put_on_line(Index v, Index line, const Extraction& extraction);
+  void fit_between(Index v, std::array<Index, 2> ends, float tolerated, Mesh& mesh);
+
+  /// `entry`: the place of v's node in lines_.vertices, or no_index; `p`: where v is.
+  void put_on_line(Index v, Index line, Index entry, const Vec3& p);
 
   const FeatureLines& lines_;
   std::vector<double> ways_;  // of lines_.vertices, from the beginning of their lines

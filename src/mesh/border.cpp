@@ -17,13 +17,12 @@ struct EdgeFaces {
 };
 
 /// Calls `take(a, b, faces, out)` for every edge a < b.
-template <typename Take>
-std::vector<std::array<Index, 2>> select_edges(const Mesh& mesh, const Take& take,
-                                               const Context& context) {
+template <typename Selected, typename Take>
+std::vector<Selected> select_edges(const Mesh& mesh, const Take& take, const Context& context) {
   constexpr std::size_t grain = 4096;
   const VertexFaces around = vertex_faces(mesh, context);
   const std::size_t n = mesh.positions.size();
-  std::vector<std::vector<std::array<Index, 2>>> found((n + grain - 1) / grain);
+  std::vector<std::vector<Selected>> found((n + grain - 1) / grain);
   context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
     struct Use {
       Index other, face;
@@ -54,17 +53,18 @@ std::vector<std::array<Index, 2>> select_edges(const Mesh& mesh, const Take& tak
       }
     }
   });
-  std::vector<std::array<Index, 2>> result;
+  std::vector<Selected> result;
   for (const auto& part : found) result.insert(result.end(), part.begin(), part.end());
   return result;
 }
 
-using Edges = std::vector<std::array<Index, 2>>;
+using Edge = std::array<Index, 2>;
+using Edges = std::vector<Edge>;
 
 }  // namespace
 
 std::vector<std::array<Index, 2>> border_edges(const Mesh& mesh, const Context& context) {
-  return select_edges(
+  return select_edges<Edge>(
       mesh,
       [](Index a, Index b, const EdgeFaces& faces, Edges& out) {
         if (faces.forth + faces.back != 1) return;
@@ -74,7 +74,7 @@ std::vector<std::array<Index, 2>> border_edges(const Mesh& mesh, const Context& 
 }
 
 std::vector<std::array<Index, 2>> rim_edges(const Mesh& mesh, const Context& context) {
-  return select_edges(
+  return select_edges<Edge>(
       mesh,
       [](Index a, Index b, const EdgeFaces& faces, Edges& out) {
         if (faces.forth != 1 || faces.back != 1) out.push_back({a, b});
@@ -82,8 +82,7 @@ std::vector<std::array<Index, 2>> rim_edges(const Mesh& mesh, const Context& con
       context);
 }
 
-std::vector<std::array<Index, 2>> crease_edges(const Mesh& mesh, double degrees,
-                                               const Context& context) {
+std::vector<SharpEdge> sharp_edges(const Mesh& mesh, double degrees, const Context& context) {
   const double cosine = std::cos(degrees * std::numbers::pi / 180);
   const auto normal = [&](Index f) {
     const auto face = mesh.faces[f];
@@ -94,15 +93,23 @@ std::vector<std::array<Index, 2>> crease_edges(const Mesh& mesh, double degrees,
     }
     return sum;
   };
-  return select_edges(
+  return select_edges<SharpEdge>(
       mesh,
-      [&](Index a, Index b, const EdgeFaces& faces, Edges& out) {
+      [&](Index a, Index b, const EdgeFaces& faces, std::vector<SharpEdge>& out) {
         if (faces.forth != 1 || faces.back != 1) return;
         const Vec3 left = normal(faces.left), right = normal(faces.right);
         const double lengths = static_cast<double>(left.norm()) * right.norm();
-        if (lengths > 0 && left.dot(right) < cosine * lengths) out.push_back({a, b});
+        const double product = left.dot(right);
+        if (lengths > 0 && product < cosine * lengths) out.push_back({{a, b}, product / lengths});
       },
       context);
+}
+
+std::vector<std::array<Index, 2>> crease_edges(const Mesh& mesh, double degrees,
+                                               const Context& context) {
+  Edges result;
+  for (const SharpEdge& edge : sharp_edges(mesh, degrees, context)) result.push_back(edge.ends);
+  return result;
 }
 
 }  // namespace meshgrain

@@ -16,8 +16,16 @@ std::vector<std::array<Index, 2>> border_edges(const Mesh& mesh,
 /// more than two faces or sides that disagree meet. Each once, the smaller index first.
 std::vector<std::array<Index, 2>> rim_edges(const Mesh& mesh, const Context& context = Context(1));
 
-/// The edges between two faces whose normals differ by more than `degrees`, the smaller index
-/// first.
+/// An edge between two faces, the smaller index first, and the cosine of the angle between their
+/// normals.
+struct SharpEdge {
+  std::array<Index, 2> ends;
+  double cosine;
+};
+
+/// The edges between two faces whose normals differ by more than `degrees`.
+std::vector<SharpEdge> sharp_edges(const Mesh& mesh, double degrees,
+                                   const Context& context = Context(1));
 std::vector<std::array<Index, 2>> crease_edges(const Mesh& mesh, double degrees,
                                                const Context& context = Context(1));
 

@@ -1,0 +1,77 @@
+#include "symmetry/remesh_symmetric.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "meshgrain/clean.h"
+#include "meshgrain/error.h"
+#include "meshgrain/surface.h"
+#include "meshgrain/triangulate.h"
+#include "remesh/notes.h"
+
+namespace meshgrain {
+namespace {
+
+/// The planes about which the input is symmetric, of those that are asked for.
+std::vector<MirrorPlane> find_symmetry(const Mesh& input, const Symmetry& symmetry,
+                                       std::vector<std::string>& notes, const Context& context) {
+  constexpr double tolerance = 0.01;  // of the diagonal, for the mean distance to the mirror image
+  std::vector<MirrorPlane> planes;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!symmetry.automatic && !symmetry.axes[axis]) continue;
+    const MirrorPlane plane = find_mirror_plane(input, axis, context);
+    if (plane.mismatch <= tolerance) {
+      planes.push_back(plane);
+    } else if (symmetry.axes[axis]) {
+      notes.push_back(std::string("not symmetric across ") + "xyz"[axis]);
+    }
+  }
+  if (!symmetry.automatic) return planes;
+  const auto less = [](const MirrorPlane& a, const MirrorPlane& b) {
+    return a.mismatch < b.mismatch;
+  };
+  // One is enough: every plane is one more line that edges must follow.
+  const auto best = std::min_element(planes.begin(), planes.end(), less);
+  if (best != planes.end()) return {*best};
+  notes.push_back("not symmetric across x, y or z");
+  return {};
+}
+
+}  // namespace
+
+RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const Context& context) {
+  if (input.is_point_cloud()) throw Error("symmetry needs a mesh: the input is a point cloud");
+  if (options.faces == OutputFaces::hexagons) throw Error("hexagons cannot be made symmetric");
+  const std::size_t vertices = input.positions.size(), faces = input.faces.size();
+  std::vector<std::string> notes = describe(clean(input));
+  if (!(surface_area(input) > 0)) {
+    throw Error("the input has no surface: all of its faces are degenerate");
+  }
+  const auto planes = find_symmetry(input, options.symmetry, notes, context);
+  options.symmetry = {};
+  if (options.edge_length == 0 && options.face_count == 0 && options.vertex_count == 0) {
+    options.vertex_count = std::max<std::size_t>(vertices / 16, 1);
+  }
+  if (!planes.empty()) input = triangulate(input);
+  for (const MirrorPlane& plane : planes) {
+    cut_at(input, plane);
+    options.face_count = (options.face_count + 1) / 2;
+    options.vertex_count = (options.vertex_count + 1) / 2;
+    // A point beyond the plane has its mirror image on this side.
+    double& coordinate = options.sizing.point[plane.axis];
+    const double middle = input.origin[plane.axis];
+    coordinate = middle + std::abs(coordinate - middle);
+  }
+  RemeshResult result = remesh(std::move(input), options, context);
+  for (const MirrorPlane& plane : planes) {
+    add_mirror_image(result.mesh, plane.axis, 0.2 * edge_lengths(result.mesh).mean);
+    notes.push_back(std::string("made symmetric across ") + "xyz"[plane.axis]);
+  }
+  result.report.input_vertices = vertices;
+  result.report.input_faces = faces;
+  result.report.notes.insert(result.report.notes.end(), notes.begin(), notes.end());
+  return result;
+}
+
+}  // namespace meshgrain
