@@ -1,0 +1,43 @@
+#include "features/mechanical_creases.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "mesh/border.h"
+
+namespace meshgrain {
+
+std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh, const Context& context) {
+  constexpr double sharp = 40, flat = 10;  // degrees
+  const std::vector<SharpEdge> edges = sharp_edges(mesh, flat, context);
+  const auto is_above = [](const SharpEdge& edge, double degrees) {
+    return edge.cosine < std::cos(degrees * std::numbers::pi / 180);
+  };
+  const auto length_above = [&](double degrees) {
+    double sum = 0;
+    for (const SharpEdge& edge : edges) {
+      const auto [a, b] = edge.ends;
+      if (is_above(edge, degrees)) sum += (mesh.positions[a] - mesh.positions[b]).norm();
+    }
+    return sum;
+  };
+  const double creases = length_above(sharp);
+  if (creases <= length_above(flat) - creases) return {};
+  // The threshold is where it matters least.
+  double threshold = sharp, least = std::numeric_limits<double>::infinity();
+  constexpr double lowest = 20, window = 1.25, step = 2;
+  for (double degrees = sharp; degrees >= lowest; degrees -= step) {
+    const double doubtful = length_above(degrees / window) - length_above(degrees * window);
+    if (doubtful >= least) continue;
+    least = doubtful;
+    threshold = degrees;
+  }
+  std::vector<std::array<Index, 2>> result;
+  for (const SharpEdge& edge : edges) {
+    if (is_above(edge, threshold)) result.push_back(edge.ends);
+  }
+  return result;
+}
+
+}  // namespace meshgrain
