@@ -322,6 +322,87 @@ TEST_F(Io, ObjErrorsNameTheLine) {
   EXPECT_EQ(error_of("a.obj", "# nothing\n"), "a.obj: the file holds no vertices");
 }
 
+// -------------------------------------------------------------------------------------- lines
+
+using Lines = std::vector<std::vector<Index>>;
+
+Lines lines_of(const Polylines& lines) {
+  Lines all;
+  for (std::size_t line = 0; line < lines.size(); ++line) {
+    all.emplace_back(lines.vertices.begin() + lines.begin(line),
+                     lines.vertices.begin() + lines.end(line));
+  }
+  return all;
+}
+
+TEST_F(Io, LinesAreJoinedWhereTwoMeet) {
+  std::string text;
+  for (int i = 0; i < 12; ++i) text += fmt::format("v {} 0 0\n", i);
+  // A path in pieces, with one given twice and a face between; a star of three;
+  // a loop.
+  text +=
+      "l 4 3/1\nf 1 2 3\nl 1 2 3\nl 2 1\nl -9 5 5\nl 7 6\nl 8 6\nl 9 6\nl "
+      "10 11 12 10\nl 2\n";
+  const Polylines lines = read_polylines(file("a.obj", text));
+  EXPECT_EQ(lines_of(lines), (Lines{{0, 1, 2, 3, 4}, {5, 6}, {5, 7}, {5, 8}, {9, 10, 11, 9}}));
+  ASSERT_EQ(lines.points.size(), 12u);
+  EXPECT_EQ(lines.points[7], Eigen::Vector3d(7, 0, 0));
+}
+
+TEST_F(Io, LinesFarFromZeroAreWhereTheFileSays) {
+  const Polylines lines =
+      read_polylines(file("a.obj", "v 100000.25 0 0\nv 100000.75 1 0\nv 100001 0 0\nl 1 2 3\n"));
+  EXPECT_EQ(lines.points[1], Eigen::Vector3d(100000.75, 1, 0));
+}
+
+TEST_F(Io, PlyEdgesAreLines) {
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement edge 2\nproperty "
+      "int vertex2\nproperty uchar red\n"
+      "property int vertex1\nelement vertex 3\nproperty "
+      "float x\nproperty float y\n"
+      "property float z\nend_header\n";
+  const std::string points = "0 0 0\n1 0 0\n1 1 0\n";
+  EXPECT_EQ(lines_of(read_polylines(file("a.ply", header + "0 255 2\n1 255 2\n" + points))),
+            (Lines{{0, 2, 1}}));
+  EXPECT_EQ(error_of("a.ply", header + "0 255 2\n3 255 2\n" + points),
+            "a.ply: line 13: vertex index 3 is out of range: the file holds 3 "
+            "vertices, in edge 2 of "
+            "2");
+  EXPECT_TRUE(read("b.ply", header + "0 255 2\n1 255 2\n" + points).marked_edges.empty());
+}
+
+TEST_F(Io, WhatHasNoLinesIsRefused) {
+  const auto error_of_lines = [&](const std::string& name, const std::string& bytes) {
+    try {
+      read_polylines(file(name, bytes));
+    } catch (const Error& error) {
+      return without_folder(error);
+    }
+    return "no error"s;
+  };
+  const std::string cloud = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  EXPECT_EQ(error_of_lines("a.obj", cloud + "f 1 2 3\nl 1 1\n"),
+            "a.obj: has no lines: OBJ has them as \"l\", PLY as the element "
+            "\"edge\"");
+  EXPECT_EQ(error_of_lines("a.xyz", "0 0 0\n"), "a.xyz: only OBJ and PLY files have lines");
+  EXPECT_EQ(error_of_lines("a.obj", cloud + "l 1 4\n"),
+            "a.obj: line 4: vertex index 4 is out of range: the file holds 3 "
+            "vertices");
+  EXPECT_EQ(error_of_lines("a.obj", cloud + "l 1 two\n"),
+            "a.obj: line 4: expected a vertex index, found \"two\"");
+  EXPECT_EQ(error_of_lines("a.obj", cloud + "l 1 -4\n"),
+            "a.obj: line 4: vertex index -4 is out of range: the file holds 3 "
+            "vertices");
+}
+
+/// Points with lines are a point cloud as before.
+TEST_F(Io, LinesMakeNoMesh) {
+  const Mesh mesh = read("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2 3\n");
+  EXPECT_TRUE(mesh.is_point_cloud());
+  EXPECT_TRUE(mesh.marked_edges.empty());
+}
+
 // ---------------------------------------------------------------------------------------- PLY
 
 TEST_F(Io, PlyTextInAnyOrder) {

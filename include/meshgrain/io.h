@@ -7,6 +7,7 @@
 
 #include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
+#include "meshgrain/polylines.h"
 
 namespace meshgrain {
 
@@ -25,6 +26,11 @@ struct ReadOptions {
 /// or cut off, or if an index is out of range or a number is not finite.
 Mesh read_mesh(const std::filesystem::path& path, const ReadOptions& options = {},
                const Context& context = Context());
+
+/// Reads the lines of a file, whatever faces it has beside: `l` of OBJ, the element `edge`
+/// (`vertex1`, `vertex2`) of PLY. All its vertices are points, in their order; lines that meet at a
+/// point are one if no third does. Throws Error as read_mesh does, and if the file has no lines.
+Polylines read_polylines(const std::filesystem::path& path, const Context& context = Context());
 
 /// Writes OBJ, PLY (binary, little endian), OFF or STL (binary), chosen by the extension. The file
 /// appears whole or not at all: it is written beside its place and renamed. STL splits polygons

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
@@ -62,6 +63,9 @@ struct Mesh {
   Faces faces;                  ///< Empty for a point cloud.
   std::vector<Vec3> normals;    ///< One unit vector a vertex, or empty.
   std::vector<float> values;    ///< One number a vertex (ReadOptions::value_name), or empty.
+  /// Edges of faces, as the vertices at their ends, that find_features() is to make lines of. In
+  /// any order; what changes the mesh carries them along.
+  std::vector<std::array<Index, 2>> marked_edges;
   /// Added to every position when the mesh is written: keeps single precision exact enough for
   /// surfaces far from zero (surveys, scans in map coordinates).
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();

@@ -18,6 +18,7 @@
 #include "meshgrain/mesh.h"
 #include "meshgrain/normals.h"
 #include "meshgrain/picture.h"
+#include "meshgrain/polylines.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
 #include "meshgrain/singularities.h"

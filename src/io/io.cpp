@@ -8,6 +8,7 @@
 #include "io/formats.h"
 #include "io/input.h"
 #include "io/output.h"
+#include "mesh/join_edges.h"
 #include "mesh/weld.h"
 #include "meshgrain/error.h"
 
@@ -19,17 +20,18 @@ struct Format {
   Mesh (*read)(const io::Input&);
   void (*write)(io::Output&, const Mesh&);     // null if it is only read
   bool (*is_content)(std::string_view bytes);  // null if the content does not tell
+  Mesh (*read_lines)(const io::Input&);        // as marked edges; null if it has none
 };
 
 // In the order in which contents are tried.
 constexpr Format formats[] = {
-    {".obj", io::read_obj, io::write_obj, nullptr},
-    {".ply", io::read_ply, io::write_ply, io::is_ply},
-    {".off", io::read_off, io::write_off, io::is_off},
-    {".stl", io::read_stl, io::write_stl, io::is_stl},
-    {".aln", io::read_aln, nullptr, nullptr},
-    {".xyz", io::read_xyz, nullptr, nullptr},
-    {".pts", io::read_pts, nullptr, nullptr},
+    {".obj", io::read_obj, io::write_obj, nullptr, io::read_obj},
+    {".ply", io::read_ply, io::write_ply, io::is_ply, io::read_ply},
+    {".off", io::read_off, io::write_off, io::is_off, nullptr},
+    {".stl", io::read_stl, io::write_stl, io::is_stl, nullptr},
+    {".aln", io::read_aln, nullptr, nullptr, nullptr},
+    {".xyz", io::read_xyz, nullptr, nullptr, nullptr},
+    {".pts", io::read_pts, nullptr, nullptr, nullptr},
 };
 
 template <class Predicate>
@@ -91,10 +93,24 @@ Mesh read_mesh(const std::filesystem::path& path, const ReadOptions& options,
   if (!options.value_name.empty() && mesh.values.empty()) {
     input.fail("only PLY files have named numbers, such as " + io::in_quotes(options.value_name));
   }
+  if (mesh.is_point_cloud()) mesh.marked_edges = {};
   normalize(mesh.normals);
   if (options.weld) weld(mesh);
   context.progress("read", 1);
   return mesh;
+}
+
+Polylines read_polylines(const std::filesystem::path& path, const Context& context) {
+  const ReadOptions options;
+  const io::Input input(path, options, context);
+  const Format& format = format_of(input);
+  if (!format.read_lines) input.fail("only OBJ and PLY files have lines");
+  const Mesh mesh = format.read_lines(input);
+  Polylines lines = join_edges(mesh.marked_edges, mesh.positions.size());
+  if (lines.empty()) input.fail("has no lines: OBJ has them as \"l\", PLY as the element \"edge\"");
+  for (const Vec3& p : mesh.positions) lines.points.push_back(p.cast<double>() + mesh.origin);
+  context.progress("read", 1);
+  return lines;
 }
 
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh) {

@@ -1,4 +1,4 @@
-// Wavefront OBJ: positions, faces, and the normals of point clouds; all else is ignored.
+// Wavefront OBJ: positions, faces, lines, and the normals of point clouds; all else is ignored.
 
 #include <fmt/format.h>
 
@@ -11,7 +11,8 @@
 namespace meshgrain::io {
 namespace {
 
-/// The highest vertex that faces named before it was defined, checked when all of them are known.
+/// The highest vertex that faces and lines named before it was defined, checked when all of them
+/// are known.
 struct ForwardReference {
   std::uint64_t number = 0;
   const char* at = nullptr;
@@ -45,8 +46,13 @@ Mesh read_obj(const Input& input) {
   Mesh mesh;
   Text text(input);
   Coordinates coordinates;
-  std::vector<Index> face;
+  std::vector<Index> corners;
   ForwardReference forward;
+  const auto read_corners = [&] {
+    text.advance(1);
+    corners.clear();
+    while (!text.line_ends()) corners.push_back(read_corner(text, coordinates.size(), forward));
+  };
   for (std::size_t line = 0; !text.at_end(); ++line, text.next_line()) {
     if (line % 65536 == 0) input.progress(text.at());
     if (text.line_ends()) continue;
@@ -57,10 +63,13 @@ Mesh read_obj(const Input& input) {
       const double z = text.number("coordinate z");
       coordinates.push(x, y, z);
     } else if (text.word_is("f")) {
-      text.advance(1);
-      face.clear();
-      while (!text.line_ends()) face.push_back(read_corner(text, coordinates.size(), forward));
-      if (face.size() >= 3) mesh.faces.push_back(face);
+      read_corners();
+      if (corners.size() >= 3) mesh.faces.push_back(corners);
+    } else if (text.word_is("l")) {
+      read_corners();
+      for (std::size_t k = 1; k < corners.size(); ++k) {
+        mesh.marked_edges.push_back({corners[k - 1], corners[k]});
+      }
     } else if (mesh.faces.empty() && text.word_is("vn")) {
       text.advance(2);
       const double x = text.number("normal x");

@@ -1,5 +1,5 @@
 // Stanford's Polygon File Format (PLY): text and both byte orders, any types and any order of
-// elements and properties. Understood are the elements `vertex`, `face`, `tristrips` and
+// elements and properties. Understood are the elements `vertex`, `face`, `edge`, `tristrips` and
 // `range_grid`; others are skipped.
 
 #include "io/ply.h"
@@ -142,6 +142,8 @@ class Reader {
         read_vertices(element);
       } else if (element.name == "face") {
         read_faces(element);
+      } else if (element.name == "edge") {
+        read_edges(element);
       } else if (element.name == "tristrips") {
         read_strips(element);
       } else if (element.name == "range_grid") {
@@ -300,16 +302,41 @@ class Reader {
     if (size > body_.left() / body_.least_bytes(property.type) + 1) body_.fail_at_end(item);
     list.clear();
     list.reserve(size);
-    for (std::uint64_t i = 0; i < size; ++i) {
-      const double index = body_.number(property.type, item);
-      if (index >= 0 && index < static_cast<double>(vertices_) && index == std::floor(index)) {
-        list.push_back(static_cast<Index>(index));
-      } else if (restarts && index == -1) {
-        list.push_back(no_index);
-      } else {
-        body_.fail_at_last(property.type, out_of_range(fmt::format("{}", index), vertices_) +
-                                              ", in " + item.text());
+    for (std::uint64_t i = 0; i < size; ++i) list.push_back(read_index(property, item, restarts));
+  }
+
+  Index read_index(const Property& property, const Item& item, bool restarts) {
+    const double index = body_.number(property.type, item);
+    if (index >= 0 && index < static_cast<double>(vertices_) && index == std::floor(index)) {
+      return static_cast<Index>(index);
+    }
+    if (restarts && index == -1) return no_index;
+    body_.fail_at_last(property.type,
+                       out_of_range(fmt::format("{}", index), vertices_) + ", in " + item.text());
+  }
+
+  void read_edges(const Element& element) {
+    constexpr std::string_view names[] = {"vertex1", "vertex2"};
+    for (const std::string_view name : names) {
+      const auto is_named = [&](const Property& p) { return !p.count_type && p.name == name; };
+      const auto& properties = element.properties;
+      if (std::count_if(properties.begin(), properties.end(), is_named) != 1) return skip(element);
+    }
+    mesh_.marked_edges.reserve(plausible_rows(element));
+    for (std::uint64_t row = 0; row < element.count; ++row) {
+      tick(row);
+      const Item item{"edge", row, element.count};
+      std::array<Index, 2> edge{};
+      for (const Property& property : element.properties) {
+        const auto end = std::find(std::begin(names), std::end(names), property.name);
+        if (property.count_type || end == std::end(names)) {
+          skip(property, item);
+        } else {
+          edge[static_cast<std::size_t>(end - std::begin(names))] =
+              read_index(property, item, false);
+        }
       }
+      mesh_.marked_edges.push_back(edge);
     }
   }
 

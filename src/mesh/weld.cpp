@@ -73,6 +73,7 @@ std::size_t weld(Mesh& mesh) {
     if (length > 0) mesh.normals[v] = sums[v] / length;  // else opposite ones: the first stays
   }
   for (Index& corner : mesh.faces.corners()) corner = target[corner];
+  for (auto& edge : mesh.marked_edges) edge = {target[edge[0]], target[edge[1]]};
   return before - after;
 }
 
