@@ -14,16 +14,18 @@ struct CleanReport {
       0;  ///< The corners of an earlier face, in the same or reverse order.
   std::size_t unused_vertices = 0;   ///< Of no face that is left.
   std::size_t duplicate_points = 0;  ///< Point clouds only: at the position of an earlier point.
+  std::size_t loose_marks = 0;       ///< Marked edges that are edges of no face that is left.
 
   bool any() const {
     return repeated_corners + degenerate_faces + duplicate_faces + unused_vertices +
-               duplicate_points >
+               duplicate_points + loose_marks >
            0;
   }
 };
 
 /// Removes, in linear time, what carries no surface, and says how much there was of it. The order
-/// of what is left stays, and normals and values follow their vertices. Does not weld vertices.
+/// of what is left stays, and normals and values follow their vertices. Marked edges are then
+/// sorted, the smaller index first, and each there once. Does not weld vertices.
 CleanReport clean(Mesh& mesh);
 
 /// Removes pieces of less area (squared input units), but never the largest, and returns their

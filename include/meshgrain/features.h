@@ -4,10 +4,12 @@
 
 #include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
+#include "meshgrain/polylines.h"
 
 namespace meshgrain {
 
-/// The lines of a surface that edges of the output follow: its border and its creases.
+/// The lines of a surface that edges of the output follow: its border, its creases and its marked
+/// edges.
 struct FeatureLines {
   /// Vertices of the surface, line after line, in the order in which a line runs. Open lines end at
   /// corners; a closed one ends with the vertex that it began with.
@@ -27,18 +29,20 @@ struct FeatureLines {
   bool is_closed(std::size_t line) const;
 };
 
+/// Which edges are creases, beside those that are marked (Mesh::marked_edges).
 enum class Creases {
   automatic,  ///< Of mechanical parts: edges clearly sharper than all that are meant to be smooth.
   by_angle,
-  none,
+  none,  ///< Not even marked edges.
 };
 
 struct FeatureOptions {
   Creases creases = Creases::automatic;
   double crease_degrees = 40;  ///< Creases::by_angle: the least angle between the faces' normals.
   bool align_border = true;    ///< Whether the fields follow the border.
-  /// How strongly orientations and positions are held to creases. Extrinsic energies turn to them
-  /// by themselves, and do better where creases meet at angles that no cross can follow.
+  /// How strongly orientations and positions are held to creases and marked edges. Extrinsic
+  /// energies turn to them by themselves, and do better where creases meet at angles that no cross
+  /// can follow.
   float orient_creases = 0, align_creases = 1;
 };
 
@@ -46,5 +50,12 @@ struct FeatureOptions {
 /// from edge to edge and over `edge_length`, that of the output.
 FeatureLines find_features(const Mesh& triangles, const FeatureOptions& options, double edge_length,
                            const Context& context = Context());
+
+/// Marks the edges of a mesh along lines that were drawn on it. Each of their points must be where
+/// a vertex is, within 0.0001 of the mesh's diagonal. Where an edge joins one to the next it is
+/// marked, else the edges of the shortest way between them, of several such ways that nearest to
+/// the straight line. Throws Error, which counts points from 1, as the vertices of a file, if there
+/// is no such vertex or no way.
+void mark_edges(Mesh& mesh, const Polylines& lines, const Context& context = Context());
 
 }  // namespace meshgrain

@@ -22,19 +22,23 @@ struct ReadOptions {
 /// Reads OBJ, PLY (ASCII and both byte orders; `tristrips` and `range_grid` too), OFF (text and
 /// binary), STL (both kinds), ALN, XYZ or PTS; the kind is told by the content where that is
 /// possible, else by the name's extension. A file with vertices but no faces is a point cloud.
+/// Mesh::marked_edges get the lines of OBJ (`l`), edges between faces of different materials
+/// (`usemtl`) or of different normals at both ends (unless that is flat shading), and the element
+/// `edge` (`vertex1`, `vertex2`) of PLY.
 /// Throws Error, naming the file and the line or byte, if the file is missing, of an unknown kind
 /// or cut off, or if an index is out of range or a number is not finite.
 Mesh read_mesh(const std::filesystem::path& path, const ReadOptions& options = {},
                const Context& context = Context());
 
-/// Reads the lines of a file, whatever faces it has beside: `l` of OBJ, the element `edge`
-/// (`vertex1`, `vertex2`) of PLY. All its vertices are points, in their order; lines that meet at a
-/// point are one if no third does. Throws Error as read_mesh does, and if the file has no lines.
+/// Reads the lines of a file, whatever faces it has beside: `l` of OBJ, the element `edge` of PLY.
+/// All its vertices are points, in their order; lines that meet at a point are one if no third does.
+/// Throws Error as read_mesh does, and if the file has no lines.
 Polylines read_polylines(const std::filesystem::path& path, const Context& context = Context());
 
 /// Writes OBJ, PLY (binary, little endian), OFF or STL (binary), chosen by the extension. The file
 /// appears whole or not at all: it is written beside its place and renamed. STL splits polygons
-/// into triangles. Throws Error if the extension is unknown or the place cannot be written.
+/// into triangles. Marked edges become lines of OBJ and the element `edge` of PLY. Throws Error if
+/// the extension is unknown or the place cannot be written.
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh);
 
 /// Throws the error that write_mesh would throw for an unknown extension or a missing or read-only

@@ -30,6 +30,7 @@ struct MeshStatistics {
   std::size_t non_manifold_edges = 0;     ///< With more than two faces.
   std::size_t non_manifold_vertices = 0;  ///< Whose faces are more than one fan.
   std::size_t isolated_vertices = 0;      ///< Without a face; in no number but `vertices`.
+  std::size_t marked_edges = 0;           ///< Of Mesh::marked_edges, those that faces have.
   long euler = 0;                         ///< Vertices (but isolated ones) - edges + faces.
 };
 

@@ -8,7 +8,7 @@ namespace {
 
 /// How strongly orientations and positions are held to a line.
 std::array<float, 2> strengths(LineKind kind, const FeatureOptions& options) {
-  if (kind == LineKind::crease) return {options.orient_creases, options.align_creases};
+  if (kind != LineKind::border) return {options.orient_creases, options.align_creases};
   // Softly: a ragged border turns faster than crosses can.
   constexpr float orient_border = 0.45f;
   return options.align_border ? std::array{orient_border, 1.0f} : std::array{0.0f, 0.0f};
@@ -72,9 +72,11 @@ class Chaining {
 
   Index degree(Index v) const { return offsets_[v + 1] - offsets_[v]; }
 
-  /// Whether one line goes through a vertex.
+  /// Whether one line goes through a vertex. Creases go on as marked edges: a crease may flatten
+  /// out.
   bool goes_on(Index v) const {
-    return degree(v) == 2 && spokes_[offsets_[v]].kind == spokes_[offsets_[v] + 1].kind;
+    const auto is_border = [&](Index spoke) { return spokes_[spoke].kind == LineKind::border; };
+    return degree(v) == 2 && is_border(offsets_[v]) == is_border(offsets_[v] + 1);
   }
 
   /// The spoke that goes on from v, for who came from `from`.

@@ -3,9 +3,28 @@
 #include "features/chain_edges.h"
 #include "features/mechanical_creases.h"
 #include "mesh/border.h"
+#include "mesh/marks.h"
 #include "meshgrain/features.h"
 
 namespace meshgrain {
+namespace {
+
+using Edges = std::vector<std::array<Index, 2>>;
+
+/// The marked edges that are between two faces, sorted and each once: those of the border are lines
+/// as it is.
+Edges inner_marks(const Mesh& mesh, const Context& context) {
+  if (mesh.marked_edges.empty()) return {};
+  const Edges marks = sorted_marks(mesh);
+  const auto is_marked = [&](const InnerEdge& edge) {
+    return std::binary_search(marks.begin(), marks.end(), edge.ends);
+  };
+  Edges result;
+  for (const InnerEdge& edge : inner_edges(mesh, is_marked, context)) result.push_back(edge.ends);
+  return result;
+}
+
+}  // namespace
 
 bool FeatureLines::is_closed(std::size_t line) const {
   const Index v = vertices[begin(line)];
@@ -14,14 +33,19 @@ bool FeatureLines::is_closed(std::size_t line) const {
 
 FeatureLines find_features(const Mesh& mesh, const FeatureOptions& options, double edge_length,
                            const Context& context) {
-  std::vector<std::array<Index, 2>> creases;
+  Edges creases, marked;
   if (options.creases == Creases::automatic) creases = mechanical_creases(mesh, context);
   if (options.creases == Creases::by_angle) {
     creases = crease_edges(mesh, options.crease_degrees, context);
   }
+  if (options.creases != Creases::none) marked = inner_marks(mesh, context);
   std::vector<EdgeOfLine> edges;
   for (const auto& ends : rim_edges(mesh, context)) edges.push_back({ends, LineKind::border});
-  for (const auto& ends : creases) edges.push_back({ends, LineKind::crease});
+  for (const auto& ends : marked) edges.push_back({ends, LineKind::marked});
+  for (const auto& ends : creases) {
+    const bool is_marked = std::binary_search(marked.begin(), marked.end(), ends);
+    if (!is_marked) edges.push_back({ends, LineKind::crease});
+  }
   return chain_edges(mesh, edges, options, edge_length);
 }
 

@@ -22,6 +22,9 @@ Mesh read_pts(const Input& input);
 Mesh read_stl(const Input& input);
 Mesh read_xyz(const Input& input);
 
+/// As read_obj, but only lines make marked edges.
+Mesh read_obj_lines(const Input& input);
+
 void write_obj(Output& output, const Mesh& mesh);
 void write_off(Output& output, const Mesh& mesh);
 void write_ply(Output& output, const Mesh& mesh);

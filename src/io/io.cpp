@@ -25,7 +25,7 @@ struct Format {
 
 // In the order in which contents are tried.
 constexpr Format formats[] = {
-    {".obj", io::read_obj, io::write_obj, nullptr, io::read_obj},
+    {".obj", io::read_obj, io::write_obj, nullptr, io::read_obj_lines},
     {".ply", io::read_ply, io::write_ply, io::is_ply, io::read_ply},
     {".off", io::read_off, io::write_off, io::is_off, nullptr},
     {".stl", io::read_stl, io::write_stl, io::is_stl, nullptr},

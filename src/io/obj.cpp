@@ -1,12 +1,19 @@
-// Wavefront OBJ: positions, faces, lines, and the normals of point clouds; all else is ignored.
+// Wavefront OBJ: positions, faces, the normals of point clouds, and what marks edges: lines,
+// materials, and the normals of faces' corners. All else is ignored.
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <map>
+#include <utility>
 
 #include "io/coordinates.h"
 #include "io/formats.h"
 #include "io/text.h"
+#include "mesh/border.h"
+#include "mesh/join_edges.h"
+#include "mesh/split_normals.h"
 
 namespace meshgrain::io {
 namespace {
@@ -18,73 +25,171 @@ struct ForwardReference {
   const char* at = nullptr;
 };
 
-/// Reads `v`, `v/vt`, `v//vn` or `v/vt/vn`, and returns the vertex, counted from 0. Negative
-/// numbers count back from the latest vertex.
-Index read_corner(Text& text, std::size_t vertices, ForwardReference& forward) {
-  const char* const at = text.at();
-  const std::string_view word = text.word();
-  const char* const end = word.data() + word.size();
-  std::int64_t number = 0;
-  const auto [rest, error] = std::from_chars(word.data(), end, number);
-  const bool is_index = error == std::errc() && (rest == end || *rest == '/') &&
-                        std::string_view(rest, end).find_first_not_of("/-0123456789") == word.npos;
-  if (!is_index && error != std::errc::result_out_of_range) {
-    text.fail(at, fmt::format("expected a vertex index, found {}", in_quotes(word)));
+class Reader {
+ public:
+  explicit Reader(const Input& input) : input_(input), text_(input) {}
+
+  /// Reads all lines.
+  void run() {
+    for (std::size_t line = 0; !text_.at_end(); ++line, text_.next_line()) {
+      if (line % 65536 == 0) input_.progress(text_.at());
+      if (!text_.line_ends()) read_line();
+    }
+    if (forward_.number > coordinates_.size()) {
+      text_.fail(forward_.at, out_of_range(std::to_string(forward_.number), coordinates_.size()));
+    }
+    coordinates_.move_to(mesh_, input_);
   }
-  if (number < 0) number += static_cast<std::int64_t>(vertices) + 1;
-  if (error != std::errc() || number < 1 || number >= no_index) {
-    text.fail(at, out_of_range({word.data(), rest}, vertices));
+
+  /// A mesh, whose marked edges are those of lines alone.
+  Mesh take() {
+    // In a mesh, normals belong to corners of faces, not to vertices.
+    if (mesh_.faces.empty() && shading_.normals.size() == mesh_.positions.size()) {
+      mesh_.normals = std::move(shading_.normals);
+    }
+    return std::move(mesh_);
   }
-  const auto found = static_cast<std::uint64_t>(number);
-  if (found > vertices && found > forward.number) forward = {found, at};
-  return static_cast<Index>(found - 1);
-}
+
+  void mark_material_borders() {
+    if (materials_.size() < 2) return;
+    std::vector<Index> material(mesh_.faces.size(), 0);
+    for (const auto& [face, number] : uses_) {
+      std::fill(material.begin() + static_cast<std::ptrdiff_t>(face), material.end(), number);
+    }
+    const auto parts_two = [&](const InnerEdge& edge) {
+      return material[edge.left] != material[edge.right];
+    };
+    for (const InnerEdge& edge : inner_edges(mesh_, parts_two, input_.context())) {
+      mesh_.marked_edges.push_back(edge.ends);
+    }
+  }
+
+  void mark_hard_edges() {
+    if (!shading_.corners.empty()) shading_.corners.resize(mesh_.faces.corners().size(), no_index);
+    const auto edges = split_edges(mesh_, shading_, input_.context());
+    mesh_.marked_edges.insert(mesh_.marked_edges.end(), edges.begin(), edges.end());
+  }
+
+ private:
+  void read_line() {
+    if (text_.word_is("v")) {
+      text_.advance(1);
+      const double x = text_.number("coordinate x");
+      const double y = text_.number("coordinate y");
+      const double z = text_.number("coordinate z");
+      coordinates_.push(x, y, z);
+    } else if (text_.word_is("f")) {
+      read_corners();
+      if (corners_.size() >= 3) add_face();
+    } else if (text_.word_is("l")) {
+      read_corners();
+      for (std::size_t k = 1; k < corners_.size(); ++k) {
+        mesh_.marked_edges.push_back({corners_[k - 1], corners_[k]});
+      }
+    } else if (text_.word_is("vn")) {
+      text_.advance(2);
+      read_normal();
+    } else if (text_.word_is("usemtl")) {
+      text_.advance(6);
+      // Faces before the first have a material without a name.
+      if (materials_.empty() && !mesh_.faces.empty()) materials_.emplace("", 0);
+      const auto number = static_cast<Index>(materials_.size());
+      const auto material = materials_.try_emplace(text_.rest_of_line(), number).first;
+      uses_.emplace_back(mesh_.faces.size(), material->second);
+    }
+  }
+
+  /// Normals of corners need not be good ones: they may be missing as well.
+  void read_normal() {
+    Eigen::Vector3d n = Eigen::Vector3d::Zero();
+    if (mesh_.faces.empty()) {
+      n.x() = text_.number("normal x");
+      n.y() = text_.number("normal y");
+      n.z() = text_.number("normal z");
+    } else if (!text_.try_number(n.x()) || !text_.try_number(n.y()) || !text_.try_number(n.z())) {
+      n.setZero();
+    }
+    shading_.normals.push_back(n.cast<float>());
+  }
+
+  void read_corners() {
+    text_.advance(1);
+    corners_.clear();
+    corner_normals_.clear();
+    while (!text_.line_ends()) read_corner();
+  }
+
+  /// Reads `v`, `v/vt`, `v//vn` or `v/vt/vn`, vertices and normals counted from 1. Negative numbers
+  /// count back from the latest.
+  void read_corner() {
+    const std::size_t vertices = coordinates_.size();
+    const char* const at = text_.at();
+    const std::string_view word = text_.word();
+    const char* const end = word.data() + word.size();
+    std::int64_t number = 0;
+    const auto [rest, error] = std::from_chars(word.data(), end, number);
+    const bool is_index =
+        error == std::errc() && (rest == end || *rest == '/') &&
+        std::string_view(rest, end).find_first_not_of("/-0123456789") == word.npos;
+    if (!is_index && error != std::errc::result_out_of_range) {
+      text_.fail(at, fmt::format("expected a vertex index, found {}", in_quotes(word)));
+    }
+    if (number < 0) number += static_cast<std::int64_t>(vertices) + 1;
+    if (error != std::errc() || number < 1 || number >= no_index) {
+      text_.fail(at, out_of_range({word.data(), rest}, vertices));
+    }
+    const auto found = static_cast<std::uint64_t>(number);
+    if (found > vertices && found > forward_.number) forward_ = {found, at};
+    corners_.push_back(static_cast<Index>(found - 1));
+    corner_normals_.push_back(normal_of({rest, end}));
+  }
+
+  /// The normal that what follows a vertex names, if any. It may be none: that is no error.
+  Index normal_of(std::string_view rest) const {
+    const std::size_t slash = rest.rfind('/');
+    if (slash == rest.npos || slash == 0) return no_index;
+    std::int64_t number = 0;
+    std::from_chars(rest.data() + slash + 1, rest.data() + rest.size(), number);
+    if (number < 0) number += static_cast<std::int64_t>(shading_.normals.size()) + 1;
+    return number >= 1 && number < no_index ? static_cast<Index>(number - 1) : no_index;
+  }
+
+  void add_face() {
+    const bool shaded = std::any_of(corner_normals_.begin(), corner_normals_.end(),
+                                    [](Index n) { return n != no_index; });
+    if (shaded) {
+      shading_.corners.resize(mesh_.faces.corners().size(), no_index);
+      shading_.corners.insert(shading_.corners.end(), corner_normals_.begin(),
+                              corner_normals_.end());
+    }
+    mesh_.faces.push_back(corners_);
+  }
+
+  const Input& input_;
+  Text text_;
+  Mesh mesh_;
+  Coordinates coordinates_;
+  ForwardReference forward_;
+  std::vector<Index> corners_, corner_normals_;  // of the line that is being read
+  CornerNormals shading_;
+  std::map<std::string_view, Index> materials_;
+  std::vector<std::pair<std::size_t, Index>> uses_;  // of materials, each from a face on
+};
 
 }  // namespace
 
 Mesh read_obj(const Input& input) {
-  Mesh mesh;
-  Text text(input);
-  Coordinates coordinates;
-  std::vector<Index> corners;
-  ForwardReference forward;
-  const auto read_corners = [&] {
-    text.advance(1);
-    corners.clear();
-    while (!text.line_ends()) corners.push_back(read_corner(text, coordinates.size(), forward));
-  };
-  for (std::size_t line = 0; !text.at_end(); ++line, text.next_line()) {
-    if (line % 65536 == 0) input.progress(text.at());
-    if (text.line_ends()) continue;
-    if (text.word_is("v")) {
-      text.advance(1);
-      const double x = text.number("coordinate x");
-      const double y = text.number("coordinate y");
-      const double z = text.number("coordinate z");
-      coordinates.push(x, y, z);
-    } else if (text.word_is("f")) {
-      read_corners();
-      if (corners.size() >= 3) mesh.faces.push_back(corners);
-    } else if (text.word_is("l")) {
-      read_corners();
-      for (std::size_t k = 1; k < corners.size(); ++k) {
-        mesh.marked_edges.push_back({corners[k - 1], corners[k]});
-      }
-    } else if (mesh.faces.empty() && text.word_is("vn")) {
-      text.advance(2);
-      const double x = text.number("normal x");
-      const double y = text.number("normal y");
-      const double z = text.number("normal z");
-      mesh.normals.emplace_back(Eigen::Vector3d(x, y, z).cast<float>());
-    }
-  }
-  if (forward.number > coordinates.size()) {
-    text.fail(forward.at, out_of_range(std::to_string(forward.number), coordinates.size()));
-  }
-  coordinates.move_to(mesh, input);
-  // In a mesh, normals belong to corners of faces, not to vertices.
-  if (!mesh.faces.empty() || mesh.normals.size() != mesh.positions.size()) mesh.normals = {};
-  return mesh;
+  Reader reader(input);
+  reader.run();
+  reader.mark_material_borders();
+  reader.mark_hard_edges();
+  return reader.take();
+}
+
+Mesh read_obj_lines(const Input& input) {
+  Reader reader(input);
+  reader.run();
+  return reader.take();
 }
 
 void write_obj(Output& output, const Mesh& mesh) {
@@ -104,6 +209,14 @@ void write_obj(Output& output, const Mesh& mesh) {
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     output.write("f");
     for (const Index v : mesh.faces[f]) output.print(" {}", std::size_t{v} + 1);
+    output.write("\n");
+  }
+  const Polylines lines = join_edges(mesh.marked_edges, mesh.positions.size());
+  for (std::size_t line = 0; line < lines.size(); ++line) {
+    output.write("l");
+    for (Index k = lines.begin(line); k < lines.end(line); ++k) {
+      output.print(" {}", std::size_t{lines.vertices[k]} + 1);
+    }
     output.write("\n");
   }
 }

@@ -496,6 +496,11 @@ void write(Output& output, const Mesh& mesh, std::span<const std::string> commen
     output.print("element face {}\nproperty list {} {} vertex_indices\n", mesh.faces.size(),
                  long_lists ? "uint" : "uchar", large ? "uint" : "int");
   }
+  if (!mesh.marked_edges.empty()) {
+    const char* const type = large ? "uint" : "int";
+    output.print("element edge {}\nproperty {} vertex1\nproperty {} vertex2\n",
+                 mesh.marked_edges.size(), type, type);
+  }
   output.write("end_header\n");
 
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
@@ -527,6 +532,9 @@ void write(Output& output, const Mesh& mesh, std::span<const std::string> commen
       output.put(static_cast<std::uint8_t>(face.size()));
     }
     for (const Index v : face) output.put(v);
+  }
+  for (const auto& edge : mesh.marked_edges) {
+    for (const Index v : edge) output.put(v);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mesh/edges.h"
+#include "mesh/marks.h"
 #include "util/union_find.h"
 
 namespace meshgrain {
@@ -129,6 +130,14 @@ void measure_edges(const Mesh& mesh, const std::vector<Edge>& edges, MeshStatist
   s.edge_sigma = over(lengths.sigma(), lengths.mean());
 }
 
+/// Number of `edges` that are marked.
+std::size_t count_marked(const Mesh& mesh, const std::vector<Edge>& edges) {
+  const auto marks = sorted_marks(mesh);
+  return static_cast<std::size_t>(std::count_if(edges.begin(), edges.end(), [&](const Edge& edge) {
+    return std::binary_search(marks.begin(), marks.end(), std::array{edge.a, edge.b});
+  }));
+}
+
 /// Number of vertices whose faces do not all hang together by shared edges at the vertex.
 std::size_t count_non_manifold_vertices(const Mesh& mesh) {
   const Faces& faces = mesh.faces;
@@ -181,6 +190,7 @@ MeshStatistics mesh_statistics(const Mesh& mesh) {
 
   const std::vector<Edge> edges = edges_of(mesh);
   measure_edges(mesh, edges, s);
+  s.marked_edges = count_marked(mesh, edges);
   s.non_manifold_vertices = count_non_manifold_vertices(mesh);
 
   std::vector<std::uint8_t> used(s.vertices, 0);

@@ -82,6 +82,19 @@ std::vector<std::array<Index, 2>> rim_edges(const Mesh& mesh, const Context& con
       context);
 }
 
+std::vector<InnerEdge> inner_edges(const Mesh& mesh,
+                                   const std::function<bool(const InnerEdge&)>& wanted,
+                                   const Context& context) {
+  return select_edges<InnerEdge>(
+      mesh,
+      [&](Index a, Index b, const EdgeFaces& faces, std::vector<InnerEdge>& out) {
+        if (faces.forth != 1 || faces.back != 1) return;
+        const InnerEdge edge{{a, b}, faces.left, faces.right};
+        if (wanted(edge)) out.push_back(edge);
+      },
+      context);
+}
+
 std::vector<SharpEdge> sharp_edges(const Mesh& mesh, double degrees, const Context& context) {
   const double cosine = std::cos(degrees * std::numbers::pi / 180);
   const auto normal = [&](Index f) {

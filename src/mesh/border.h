@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "meshgrain/context.h"
@@ -15,6 +16,18 @@ std::vector<std::array<Index, 2>> border_edges(const Mesh& mesh,
 /// The edges that are not simply between two faces of opposite direction: the border, and where
 /// more than two faces or sides that disagree meet. Each once, the smaller index first.
 std::vector<std::array<Index, 2>> rim_edges(const Mesh& mesh, const Context& context = Context(1));
+
+/// An edge between two faces of opposite direction, from the smaller index to the larger as `left`
+/// has it.
+struct InnerEdge {
+  std::array<Index, 2> ends;
+  Index left, right;
+};
+
+/// Those for which `wanted`, which is asked in several threads at once, says yes; sorted.
+std::vector<InnerEdge> inner_edges(const Mesh& mesh,
+                                   const std::function<bool(const InnerEdge&)>& wanted,
+                                   const Context& context = Context(1));
 
 /// An edge between two faces, the smaller index first, and the cosine of the angle between their
 /// normals.

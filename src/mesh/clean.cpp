@@ -1,6 +1,7 @@
 #include "meshgrain/clean.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <span>
@@ -8,8 +9,10 @@
 #include <vector>
 
 #include "mesh/duplicates.h"
+#include "mesh/marks.h"
 #include "meshgrain/surface.h"
 #include "util/hash.h"
+#include "util/sort_unique.h"
 #include "util/union_find.h"
 
 namespace meshgrain {
@@ -70,6 +73,24 @@ void keep_vertices(Mesh& mesh, std::span<const Index> kept) {
   compact(mesh.positions);
 }
 
+/// Sorts the marked edges, and drops those that no face has. Returns their number.
+std::size_t drop_loose_marks(Mesh& mesh) {
+  if (mesh.marked_edges.empty()) return 0;
+  const std::vector<std::array<Index, 2>> marks = sorted_marks(mesh);
+  std::vector<std::array<Index, 2>> found;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto face = std::as_const(mesh.faces)[f];
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const auto [low, high] = std::minmax(face[k], face[k + 1 == face.size() ? 0 : k + 1]);
+      const std::array edge{low, high};
+      if (std::binary_search(marks.begin(), marks.end(), edge)) found.push_back(edge);
+    }
+  }
+  sort_unique(found);
+  mesh.marked_edges = std::move(found);
+  return marks.size() - mesh.marked_edges.size();
+}
+
 /// Returns their number.
 std::size_t drop_unused_vertices(Mesh& mesh) {
   std::vector<Index> number(mesh.positions.size(), no_index);
@@ -83,6 +104,9 @@ std::size_t drop_unused_vertices(Mesh& mesh) {
   const std::size_t dropped = number.size() - kept.size();
   if (dropped > 0) {
     for (Index& v : mesh.faces.corners()) v = number[v];
+    for (auto& edge : mesh.marked_edges) edge = {number[edge[0]], number[edge[1]]};
+    std::erase_if(mesh.marked_edges,
+                  [](const auto& edge) { return edge[0] == no_index || edge[1] == no_index; });
     keep_vertices(mesh, kept);
   }
   return dropped;
@@ -93,6 +117,7 @@ std::size_t drop_unused_vertices(Mesh& mesh) {
 CleanReport clean(Mesh& mesh) {
   CleanReport report;
   if (mesh.is_point_cloud()) {
+    report.loose_marks = drop_loose_marks(mesh);
     const std::vector<Index> kept = distinct_positions(mesh.positions);
     report.duplicate_points = mesh.positions.size() - kept.size();
     if (report.duplicate_points > 0) keep_vertices(mesh, kept);
@@ -118,6 +143,7 @@ CleanReport clean(Mesh& mesh) {
   }
 
   mesh.faces = std::move(faces);
+  report.loose_marks = drop_loose_marks(mesh);
   report.unused_vertices = drop_unused_vertices(mesh);
   return report;
 }

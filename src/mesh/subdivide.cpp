@@ -56,6 +56,19 @@ void append_midpoint(Mesh& mesh, Index a, Index b) {
   if (!mesh.values.empty()) mesh.values.push_back(0.5f * (mesh.values[a] + mesh.values[b]));
 }
 
+/// Splits marked edges at their midpoints, which have the numbers from `first` on.
+void split_marks(const Midpoints& midpoints, Index first, Mesh& mesh) {
+  auto& marks = mesh.marked_edges;
+  const std::size_t count = marks.size();
+  for (std::size_t e = 0; e < count; ++e) {
+    const auto [a, b] = marks[e];
+    const Index id = midpoints.find(a, b);
+    if (id == no_index) continue;
+    marks[e] = {a, first + id};
+    marks.push_back({first + id, b});
+  }
+}
+
 /// Splits one triangle by the midpoints of its long edges (`mid[k]` on the edge from corner k to
 /// k + 1).
 void split(const std::vector<Vec3>& positions, std::array<Index, 3> v, std::array<Index, 3> mid,
@@ -126,6 +139,7 @@ void subdivide(Mesh& mesh, double max_length, const Context& context) {
       split(mesh.positions, {face[0], face[1], face[2]}, mid, finer);
     }
     mesh.faces = std::move(finer);
+    split_marks(midpoints, old_count, mesh);
   }
 }
 

@@ -60,6 +60,7 @@ std::vector<Index> sort_along_curve(Mesh& mesh, const Context& context) {
   std::vector<Index> rank(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) rank[order[k]] = static_cast<Index>(k);
   for (Index& v : mesh.faces.corners()) v = rank[v];
+  for (auto& edge : mesh.marked_edges) edge = {rank[edge[0]], rank[edge[1]]};
 
   // Counting sort of the faces by their first vertex along the curve.
   std::vector<Index> start(order.size() + 1, 0);

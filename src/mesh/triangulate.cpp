@@ -227,6 +227,7 @@ Mesh triangulate(const Mesh& polygons, std::vector<Index>* face_of_triangle) {
   result.positions = polygons.positions;
   result.normals = polygons.normals;
   result.values = polygons.values;
+  result.marked_edges = polygons.marked_edges;
   result.origin = polygons.origin;
   result.faces = Faces::uniform(count, 3);
   if (face_of_triangle) face_of_triangle->clear();

@@ -12,6 +12,7 @@ std::vector<std::string> describe(const CleanReport& cleaned) {
   note(cleaned.duplicate_faces, "duplicate faces");
   note(cleaned.unused_vertices, "vertices that no face uses");
   note(cleaned.duplicate_points, "duplicate points");
+  note(cleaned.loose_marks, "marked edges that no face has");
   return notes;
 }
 

@@ -150,9 +150,13 @@ void cut_at(Mesh& mesh, const MirrorPlane& plane) {
     }
     if (any && corners.size() >= 3) above.push_back(corners);
   }
+  for (auto& [a, b] : mesh.marked_edges) {
+    const float from = mesh.positions[a][axis], to = mesh.positions[b][axis];
+    if ((from > 0 && to < 0) || (from < 0 && to > 0)) (from < 0 ? a : b) = cross(a, b);
+  }
   mesh.faces = std::move(above);
   mesh = triangulate(mesh);
-  clean(mesh);  // the vertices of the other half
+  clean(mesh);  // the vertices and marked edges of the other half
 }
 
 void add_mirror_image(Mesh& mesh, int axis, double near) {
@@ -191,6 +195,11 @@ void add_mirror_image(Mesh& mesh, int axis, double near) {
     corners.assign(face.rbegin(), face.rend());
     for (Index& v : corners) v = image[v];
     mesh.faces.push_back(corners);
+  }
+  const std::size_t marks = mesh.marked_edges.size();
+  for (std::size_t e = 0; e < marks; ++e) {
+    const auto [a, b] = mesh.marked_edges[e];
+    if (image[a] != a || image[b] != b) mesh.marked_edges.push_back({image[a], image[b]});
   }
 }
 

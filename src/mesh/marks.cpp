@@ -1,0 +1,17 @@
+#include "mesh/marks.h"
+
+#include <algorithm>
+
+#include "util/sort_unique.h"
+
+namespace meshgrain {
+
+std::vector<std::array<Index, 2>> sorted_marks(const Mesh& mesh) {
+  std::vector<std::array<Index, 2>> marks = mesh.marked_edges;
+  std::erase_if(marks, [](const auto& edge) { return edge[0] == edge[1]; });
+  for (auto& edge : marks) std::sort(edge.begin(), edge.end());
+  sort_unique(marks);
+  return marks;
+}
+
+}  // namespace meshgrain
