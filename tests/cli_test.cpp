@@ -244,6 +244,36 @@ TEST_F(Cli, BoundariesAreFollowed) {
   EXPECT_LT(angle_sigma("-f 400 -b -S 0"), 2);
 }
 
+/// A line across the plate, in the input itself or in a file of its own.
+TEST_F(Cli, Features) {
+  Mesh plate = sample_shape("plate", 0.3);
+  write_mesh(folder_ / "in.obj", plate);
+  const std::string without = bytes("-f 300");
+  float x = 1;
+  for (const Vec3& p : plate.positions) x = p.x() > 0.1f ? std::min(x, p.x()) : x;
+  write("lines.obj", fmt::format("v 9 9 9\nv {} -0.5 0\nv {} 0.5 0\nl -2 -1\n", x, x));
+  const std::string with = bytes("-f 300 --features lines.obj");
+  EXPECT_NE(with, without);
+  const Mesh result = read_mesh(folder_ / "out.obj");
+  const auto on_line = [&](const Vec3& p) { return std::abs(p.x() - x) < 1e-5f; };
+  EXPECT_GT(std::count_if(result.positions.begin(), result.positions.end(), on_line), 10);
+
+  mark_edges(plate, read_polylines(folder_ / "lines.obj"));
+  write_mesh(folder_ / "in.obj", plate);
+  EXPECT_EQ(bytes("-f 300"), with);
+  EXPECT_EQ(bytes("-f 300 -c off"), without);
+  EXPECT_EQ(bytes("-f 300 -c 60"), with);
+  EXPECT_NE(run("stats in.obj").out.find("marked edges"), std::string::npos);
+
+  write("off.obj", "v -0.5 0.5 0\nv 0.25 0.5 1\nl 1 2\n");
+  expect_refused("in.obj -o no.obj --features off.obj", 1, "off.obj: vertex 2, at (0.25, 0.5, 1)");
+  expect_refused("in.obj -o no.obj --features missing.obj", 1, "missing.obj");
+  write("none.obj", "v 0 0 0\n");
+  expect_refused("in.obj -o no.obj --features none.obj", 1, "none.obj: has no lines");
+  expect_refused("in.obj -o no.obj --features lines.obj -c off", 2, "--features");
+  expect_refused("none.obj -o no.obj --features lines.obj", 2, "point cloud");
+}
+
 TEST_F(Cli, Sizing) {
   sample("bracket", "in.obj", 0.5);
   const double uniform = statistics("-f 400 -D").area_sigma;

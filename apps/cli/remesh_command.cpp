@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "arguments.h"
+#include "meshgrain/error.h"
 #include "meshgrain/fields_file.h"
 #include "meshgrain/io.h"
 #include "meshgrain/remesh.h"
@@ -26,7 +27,7 @@ namespace {
 
 /// What the command line says.
 struct Arguments {
-  std::string input, output, report, fields, fields_out;
+  std::string input, output, report, features, fields, fields_out;
   int threads = 0;
   bool quiet = false;
   int posy = 4;
@@ -181,12 +182,16 @@ void add_options(CLI::App& app, Arguments& a) {
   faces(app.add_flag("--manifold", o.manifold, "drop faces where the result is not manifold"));
 
   const auto follow = [&](CLI::Option* option) { option->group("What to follow"); };
+  follow(app.add_option_function<std::string>(
+                "-c,--crease", [&o](const std::string& text) { parse_creases(text, o.features); },
+                "creases: auto (of mechanical parts, default), or where the angle between faces is "
+                "larger than this; beside edges that the input marks. off: neither")
+             ->type_name("DEGREES"));
   follow(
-      app.add_option_function<std::string>(
-             "-c,--crease", [&o](const std::string& text) { parse_creases(text, o.features); },
-             "creases: auto (of mechanical parts, default), off, or where the angle between faces "
-             "is larger than this")
-          ->type_name("DEGREES"));
+      app.add_option("--features", a.features,
+                     "also the lines in this file, drawn on the input from vertex to vertex: OBJ "
+                     "with l, or PLY with edges")
+          ->type_name("FILE"));
   follow(app.add_flag("-b,--boundaries,!--free-boundaries", o.features.align_border,
                       "follow the border of an open mesh (yes)"));
   follow(app.add_option_function<std::string>(
@@ -315,6 +320,9 @@ void resolve(Arguments& a) {
                          ? "-r 4 does not fit triangles and hexagons: use -r 1, 2 or 6"
                          : "-r 6 does not fit quads: use -r 1, 2 or 4, or -p 6 for triangles");
   }
+  if (!a.features.empty() && o.features.creases == Creases::none) {
+    throw UsageError("--features and -c off exclude each other");
+  }
   if (!a.energy.empty()) {
     o.orientation_energy = orientation_energies.at(a.energy);
     o.position_energy = position_energies.at(a.energy);
@@ -349,6 +357,21 @@ void check_fields(const Arguments& a, const Fields& fields) {
     throw UsageError(fmt::format(
         "{} holds positions for {}", name,
         fields.position.posy == 6 ? "triangles: add -p 6" : "quads: leave out -p and --hexagons"));
+  }
+}
+
+/// Marks the edges of the input that are drawn in a file.
+void add_features(const Arguments& a, Mesh& input, const Context& context) {
+  if (input.is_point_cloud()) {
+    throw UsageError("--features needs a mesh: " + file_name(a.input) + " is a point cloud");
+  }
+  const Polylines lines = read_polylines(a.features, context);
+  try {
+    mark_edges(input, lines, context);
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& error) {
+    throw Error(file_name(a.features) + ": " + error.what());
   }
 }
 
@@ -402,6 +425,7 @@ void run(Arguments& a, Context& context) {
   context.on_progress = [&](std::string_view stage, double share) { bar.show(stage, share); };
 
   Mesh input = read_mesh(a.input, a.read, context);
+  if (!a.features.empty()) add_features(a, input, context);
   Fields fields;
   if (!a.fields.empty()) {
     fields = read_fields(a.fields, context);

@@ -44,6 +44,7 @@ Json to_json(const MeshStatistics& s) {
           {"non_manifold_edges", s.non_manifold_edges},
           {"non_manifold_vertices", s.non_manifold_vertices},
           {"isolated_vertices", s.isolated_vertices},
+          {"marked_edges", s.marked_edges},
           {"euler", s.euler}};
 }
 
