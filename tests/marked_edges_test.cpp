@@ -237,6 +237,33 @@ TEST_F(MarkedEdges, HardEdgesAreThoseOfTheModeller) {
   EXPECT_EQ(sorted(read("a.obj", shaded(mesh, 60)).marked_edges), sorted(crease_edges(mesh, 60)));
 }
 
+/// Exporters may give each face vertices of its own.
+TEST_F(MarkedEdges, HardEdgesAreFoundAfterWelding) {
+  const Mesh mesh = sample_shape("cylinder", 0.5);
+  const std::string shared = shaded(mesh, 60);
+  std::string vertices, faces;
+  std::size_t count = 0;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    faces += "f";
+    for (const Index v : mesh.faces[f]) {
+      const Vec3& p = mesh.positions[v];
+      vertices += fmt::format("v {} {} {}\n", p.x(), p.y(), p.z());
+      ++count;
+      faces += fmt::format(" {}//{}", count, count);
+    }
+    faces += "\n";
+  }
+  for (std::size_t at = 0; (at = shared.find("vn", at)) != shared.npos; ++at) {
+    vertices += shared.substr(at, shared.find('\n', at) + 1 - at);
+  }
+  ReadOptions options;
+  options.weld = true;
+  const Mesh welded = read_mesh(file("a.obj", vertices + faces), options);
+  EXPECT_EQ(welded.positions.size(), mesh.positions.size());
+  EXPECT_EQ(sorted(welded.marked_edges), sorted(crease_edges(welded, 60)));
+  EXPECT_FALSE(welded.marked_edges.empty());
+}
+
 TEST_F(MarkedEdges, AreWrittenAndReadAgain) {
   const Mesh mesh = marked_cube(0.1f);
   for (const char* name : {"a.obj", "a.ply"}) {

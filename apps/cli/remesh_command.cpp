@@ -323,6 +323,9 @@ void resolve(Arguments& a) {
   if (!a.features.empty() && o.features.creases == Creases::none) {
     throw UsageError("--features and -c off exclude each other");
   }
+  if (!a.features.empty() && o.graph.nodes == GraphNodes::faces) {
+    throw UsageError("--features and --graph faces exclude each other");
+  }
   if (!a.energy.empty()) {
     o.orientation_energy = orientation_energies.at(a.energy);
     o.position_energy = position_energies.at(a.energy);

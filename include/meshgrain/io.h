@@ -31,8 +31,8 @@ Mesh read_mesh(const std::filesystem::path& path, const ReadOptions& options = {
                const Context& context = Context());
 
 /// Reads the lines of a file, whatever faces it has beside: `l` of OBJ, the element `edge` of PLY.
-/// All its vertices are points, in their order; lines that meet at a point are one if no third does.
-/// Throws Error as read_mesh does, and if the file has no lines.
+/// All its vertices are points, in their order; lines that meet at a point are one if no third
+/// does. Throws Error as read_mesh does, and if the file has no lines.
 Polylines read_polylines(const std::filesystem::path& path, const Context& context = Context());
 
 /// Writes OBJ, PLY (binary, little endian), OFF or STL (binary), chosen by the extension. The file

@@ -14,6 +14,7 @@
 #include "mesh/border.h"
 #include "mesh/join_edges.h"
 #include "mesh/split_normals.h"
+#include "mesh/weld.h"
 
 namespace meshgrain::io {
 namespace {
@@ -48,6 +49,11 @@ class Reader {
       mesh_.normals = std::move(shading_.normals);
     }
     return std::move(mesh_);
+  }
+
+  /// Before edges are marked: the two faces of a hard edge may have vertices of their own there.
+  void weld_faces() {
+    if (!mesh_.faces.empty()) weld(mesh_);
   }
 
   void mark_material_borders() {
@@ -181,6 +187,7 @@ class Reader {
 Mesh read_obj(const Input& input) {
   Reader reader(input);
   reader.run();
+  if (input.options().weld) reader.weld_faces();
   reader.mark_material_borders();
   reader.mark_hard_edges();
   return reader.take();
