@@ -101,6 +101,9 @@ void expect_valid(const Mesh& mesh) {
   EXPECT_TRUE(mesh.values.empty() || mesh.values.size() == mesh.positions.size());
   for (const float value : mesh.values) ASSERT_TRUE(std::isfinite(value));
   for (const Index v : mesh.faces.corners()) ASSERT_LT(v, mesh.positions.size());
+  for (const auto& edge : mesh.marked_edges) {
+    for (const Index v : edge) ASSERT_LT(v, mesh.positions.size());
+  }
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) ASSERT_GE(mesh.faces.degree(f), 3u);
 }
 
@@ -111,6 +114,12 @@ Mesh sample() {
   mesh.faces.push_back({0, 1, 2, 3});
   mesh.faces.push_back({1, 4, 2});
   mesh.faces.push_back({2, 4, 3});
+  return mesh;
+}
+
+Mesh marked_sample() {
+  Mesh mesh = sample();
+  mesh.marked_edges = {{0, 1}, {1, 2}};
   return mesh;
 }
 
@@ -928,8 +937,13 @@ std::vector<std::pair<std::string, std::string>> corpus() {
   };
   return {
       {"a.obj", "v 0 0 0 1\nv 1 0 0\nv 1 1e0 0\nf 1/1/1 2//2 \\\n-1\nf 1 2 3\n"},
+      {"marks.obj",
+       "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 -1\nvn 0 -1 0\nvn -1 0 1\nusemtl a\n"
+       "f 1//1 3//1 2//1\nf 1//2 2//2 4//-1\nvn 1 1 1\nusemtl b\nf 2//4 3//3 4//-1\n"
+       "f 1//3 4 3//3\nl 1 2 -1/1\n"},
       {"points.obj", written(".obj", sample_points())},
       {"a.ply", written(".ply", sample())},
+      {"marks.ply", written(".ply", marked_sample())},
       {"points.ply", written(".ply", sample_points())},
       {"big.ply", binary_ply<float>(std::endian::big, "float")},
       {"grid.ply", range_grid(3)},
@@ -956,6 +970,7 @@ TEST_F(Io, DamagedFilesAreReadOrRefused) {
   const auto check = [&](const std::string& name, const std::string& bytes) {
     try {
       expect_valid(read(name, bytes));
+      if (name.starts_with("marks")) read_polylines(folder_ / name);
     } catch (const Error& error) {
       const std::string text = without_folder(error);
       EXPECT_TRUE(text.starts_with(name) || text.starts_with("scan.ply")) << text;
