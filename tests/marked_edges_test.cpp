@@ -28,6 +28,7 @@
 #include "same_topology.h"
 #include "util/platform.h"
 #include "util/triangle.h"
+#include "util/union_find.h"
 
 namespace meshgrain {
 namespace {
@@ -194,27 +195,36 @@ TEST_F(MarkedEdges, SplitNormalsOfObj) {
   EXPECT_TRUE(read("c.obj", split_cube("0 0 1", "0 0 0")).marked_edges.empty());
 }
 
-/// A mesh as OBJ, with a normal for each corner: that of the vertex, or of the face where it meets
-/// another at more than `hard` degrees.
-std::string shaded(const Mesh& mesh, double hard) {
+/// A mesh as OBJ, with a normal for each corner: the mean of the faces around its vertex up to the
+/// hard edges.
+std::string shaded(const Mesh& mesh, const Edges& hard) {
   std::string text;
   for (const Vec3& p : mesh.positions) text += fmt::format("v {} {} {}\n", p.x(), p.y(), p.z());
-  std::vector<Vec3> of_face;
-  std::vector<Vec3> of_vertex(mesh.positions.size(), Vec3::Zero());
-  std::vector<std::uint8_t> on_hard(mesh.positions.size(), 0);
-  for (const auto& [a, b] : crease_edges(mesh, hard)) on_hard[a] = on_hard[b] = 1;
+  const Edges sharp = sorted(hard);
+  const auto corner = [&](std::size_t f, Index v) {
+    const auto face = mesh.faces[f];
+    return static_cast<Index>(mesh.faces.first(f)) +
+           static_cast<Index>(std::find(face.begin(), face.end(), v) - face.begin());
+  };
+  UnionFind fans(mesh.faces.corners().size());
+  const auto is_smooth = [&](const InnerEdge& edge) {
+    return !std::binary_search(sharp.begin(), sharp.end(), edge.ends);
+  };
+  for (const InnerEdge& edge : inner_edges(mesh, is_smooth)) {
+    for (const Index v : edge.ends) fans.unite(corner(edge.left, v), corner(edge.right, v));
+  }
+  std::vector<Vec3> normals(mesh.faces.corners().size(), Vec3::Zero());
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     const auto face = mesh.faces[f];
     const Vec3 n = (mesh.positions[face[1]] - mesh.positions[face[0]])
                        .cross(mesh.positions[face[2]] - mesh.positions[face[0]]);
-    of_face.push_back(n.normalized());
-    for (const Index v : face) of_vertex[v] += n;
+    for (const Index v : face) normals[fans.find(corner(f, v))] += n;
   }
   std::size_t count = 0;
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     std::string line = "f";
     for (const Index v : mesh.faces[f]) {
-      const Vec3 n = on_hard[v] ? of_face[f] : Vec3(of_vertex[v].normalized());
+      const Vec3 n = normals[fans.find(corner(f, v))].normalized();
       text += fmt::format("vn {:.4f} {:.4f} {:.4f}\n", n.x(), n.y(), n.z());
       line += fmt::format(" {}//{}", v + 1, ++count);
     }
@@ -224,23 +234,45 @@ std::string shaded(const Mesh& mesh, double hard) {
 }
 
 TEST_F(MarkedEdges, FlatAndSmoothShadingMarkNothing) {
-  for (const char* name : {"blob", "sphere", "cylinder"}) {
+  for (const char* name : {"blob", "sphere", "cylinder", "cube"}) {
     const Mesh mesh = sample_shape(name, 0.5);
-    EXPECT_TRUE(read("smooth.obj", shaded(mesh, 180)).marked_edges.empty()) << name;
-    EXPECT_TRUE(read("flat.obj", shaded(mesh, 0)).marked_edges.empty()) << name;
+    EXPECT_TRUE(read("smooth.obj", shaded(mesh, {})).marked_edges.empty()) << name;
+    EXPECT_TRUE(read("flat.obj", shaded(mesh, crease_edges(mesh, 0))).marked_edges.empty()) << name;
   }
 }
 
-/// A cylinder with smooth sides and hard rims.
+/// Programs split normals where faces meet at more than an angle: on a coarse or a rough shape that
+/// is no modeller's choice.
+TEST_F(MarkedEdges, NormalsSplitByAnAngleMarkNothing) {
+  Mesh rough = sample_shape("blob", 0.5);
+  const auto step = static_cast<float>(0.3 * edge_lengths(rough).mean);
+  for (std::size_t v = 0; v < rough.positions.size(); ++v) {
+    const auto x = static_cast<float>(v);
+    rough.positions[v] +=
+        step * Vec3(std::sin(12.9f * x), std::sin(78.2f * x), std::sin(37.7f * x));
+  }
+  for (const double degrees : {10, 20, 30, 45}) {
+    const Edges hard = crease_edges(rough, degrees);
+    ASSERT_GT(hard.size(), 50u);
+    EXPECT_TRUE(read("a.obj", shaded(rough, hard)).marked_edges.empty()) << degrees;
+  }
+}
+
+/// A cylinder with smooth sides and hard rims, or only one.
 TEST_F(MarkedEdges, HardEdgesAreThoseOfTheModeller) {
   const Mesh mesh = sample_shape("cylinder", 0.5);
-  EXPECT_EQ(sorted(read("a.obj", shaded(mesh, 60)).marked_edges), sorted(crease_edges(mesh, 60)));
+  Edges rims = crease_edges(mesh, 60);
+  EXPECT_EQ(sorted(read("a.obj", shaded(mesh, rims)).marked_edges), sorted(rims));
+  const std::size_t both = rims.size();
+  std::erase_if(rims, [&](const auto& edge) { return mesh.positions[edge[0]].y() < 0; });
+  EXPECT_EQ(2 * rims.size(), both);
+  EXPECT_EQ(sorted(read("b.obj", shaded(mesh, rims)).marked_edges), sorted(rims));
 }
 
 /// Exporters may give each face vertices of its own.
 TEST_F(MarkedEdges, HardEdgesAreFoundAfterWelding) {
   const Mesh mesh = sample_shape("cylinder", 0.5);
-  const std::string shared = shaded(mesh, 60);
+  const std::string shared = shaded(mesh, crease_edges(mesh, 60));
   std::string vertices, faces;
   std::size_t count = 0;
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {

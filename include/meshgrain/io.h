@@ -23,8 +23,8 @@ struct ReadOptions {
 /// binary), STL (both kinds), ALN, XYZ or PTS; the kind is told by the content where that is
 /// possible, else by the name's extension. A file with vertices but no faces is a point cloud.
 /// Mesh::marked_edges get the lines of OBJ (`l`), edges between faces of different materials
-/// (`usemtl`) or of different normals at both ends (unless that is flat shading), and the element
-/// `edge` (`vertex1`, `vertex2`) of PLY.
+/// (`usemtl`) or of different normals at both ends (unless angles alone tell these, as in flat
+/// shading), and the element `edge` (`vertex1`, `vertex2`) of PLY.
 /// Throws Error, naming the file and the line or byte, if the file is missing, of an unknown kind
 /// or cut off, or if an index is out of range or a number is not finite.
 Mesh read_mesh(const std::filesystem::path& path, const ReadOptions& options = {},

@@ -15,9 +15,10 @@ struct CornerNormals {
 };
 
 /// The edges at both of whose ends its two faces have different normals: a modeller's hard edges.
-/// Sorted. None of pieces that are shaded flat: there normals only repeat the shape. A piece counts
-/// as that if nearly all of its faces have one normal each, and nearly all split edges have an
-/// angle, and most edges with an angle are split.
+/// Sorted. None of pieces where angles tell which edges are split, as in flat shading (all) or
+/// where a program split what is sharper than some angle: there normals only repeat the shape. But
+/// if the split edges are 20 degrees or sharper, and no smooth ones are nearly as sharp, they
+/// count.
 std::vector<std::array<Index, 2>> split_edges(const Mesh& mesh, const CornerNormals& given,
                                               const Context& context = Context());
 
