@@ -7,6 +7,8 @@
 
 #include "extract/reduce_faces.h"
 #include "extract/remove_strips.h"
+#include "features/find_features.h"
+#include "features/guide_constraints.h"
 #include "field/transfer.h"
 #include "mesh/border.h"
 #include "mesh/frame.h"
@@ -102,7 +104,11 @@ class Pipeline {
         if (edges.max > limit) subdivide(surface_, limit, context_);
       });
     }
-    stage_("order", [&] { sort_along_curve(surface_, context_); });
+    if (!is_cloud_) lay_guides(target_.edge_length(surface_area(surface_)));
+    stage_("order", [&] {
+      const std::vector<Index> order = sort_along_curve(surface_, context_);
+      if (!guides_.edges.empty()) renumber(guides_, order);
+    });
   }
 
   void build_levels() {
@@ -125,6 +131,8 @@ class Pipeline {
   }
 
   void find_lines() {
+    if (is_cloud_) lay_guides(mean_length_);
+    constraints_ = guide_constraints(graph(), soft_guides_);
     if (is_cloud_ || !nodes_are_vertices_) return;
     stage_("features", [&] {
       FeatureOptions options = options_.features;
@@ -132,9 +140,10 @@ class Pipeline {
       // Triangles cannot follow two creases that meet at right angles.
       if (posy_of(options_.faces) == 6) options.align_creases = 0.3f;
       const bool halved = options_.faces == OutputFaces::quads;
-      features_ =
-          find_features(surface_, options, halved ? mean_length_ / 2 : mean_length_, context_);
-      constraints_ = feature_constraints(features_);
+      features_ = find_features(surface_, options, guides_,
+                                halved ? mean_length_ / 2 : mean_length_, context_);
+      append(feature_constraints(features_));
+      append(guide_constraints(guides_, features_.corners));
     });
   }
 
@@ -278,6 +287,35 @@ class Pipeline {
     }
   }
 
+  /// Guides onto the surface: those that edges must follow are cut into it.
+  void lay_guides(double edge_length) {
+    if (options_.guides.empty()) return;
+    stage_("guides", [&] {
+      std::vector<Guide> guides = options_.guides;
+      for (Guide& guide : guides) {
+        for (Eigen::Vector3d& p : guide.points) p = frame_.inside(p);
+      }
+      std::vector<EdgeOfLine> lines;
+      const bool cut = !is_cloud_ && nodes_are_vertices_;
+      if (cut) lines = feature_edges(surface_, options_.features, context_);
+      TracedGuides traced = trace_guides(surface_, guides, lines, edge_length, frame_.scale);
+      result_.report.notes.insert(result_.report.notes.end(), traced.notes.begin(),
+                                  traced.notes.end());
+      const auto is_hard = [&](const GuideRun& run) { return cut && run.strength == 1; };
+      std::vector<GuideRun> hard;
+      for (GuideRun& run : traced.runs)
+        (is_hard(run) ? hard : soft_guides_).push_back(std::move(run));
+      if (cut) guides_ = cut_guides(surface_, hard);
+    });
+  }
+
+  void append(const FeatureConstraints& more) {
+    constraints_.orientation.insert(constraints_.orientation.end(), more.orientation.begin(),
+                                    more.orientation.end());
+    constraints_.position.insert(constraints_.position.end(), more.position.begin(),
+                                 more.position.end());
+  }
+
   const Graph& graph() const { return hierarchy_.levels[0]; }
   Fields& fields() { return result_.fields; }
 
@@ -336,6 +374,8 @@ class Pipeline {
   Hierarchy hierarchy_;
   double mean_length_ = 0;
   EdgeLength lengths_;
+  GuideLines guides_;                  // that edges follow
+  std::vector<GuideRun> soft_guides_;  // that fields are drawn to
   FeatureLines features_;
   FeatureConstraints constraints_;
   Extraction extraction_;

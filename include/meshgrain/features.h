@@ -8,8 +8,8 @@
 
 namespace meshgrain {
 
-/// The lines of a surface that edges of the output follow: its border, its creases and its marked
-/// edges.
+/// The lines of a surface that edges of the output follow: its border, its creases, its marked
+/// edges and guides that were cut into it.
 struct FeatureLines {
   /// Vertices of the surface, line after line, in the order in which a line runs. Open lines end at
   /// corners; a closed one ends with the vertex that it began with.

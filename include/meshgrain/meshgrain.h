@@ -13,6 +13,7 @@
 #include "meshgrain/fields_file.h"
 #include "meshgrain/finish.h"
 #include "meshgrain/graph.h"
+#include "meshgrain/guides.h"
 #include "meshgrain/hierarchy.h"
 #include "meshgrain/io.h"
 #include "meshgrain/mesh.h"

@@ -10,6 +10,7 @@
 #include "meshgrain/features.h"
 #include "meshgrain/fields.h"
 #include "meshgrain/graph.h"
+#include "meshgrain/guides.h"
 #include "meshgrain/mesh.h"
 #include "meshgrain/sizing.h"
 #include "meshgrain/symmetry.h"
@@ -39,6 +40,8 @@ struct RemeshOptions {
   OrientationEnergy orientation_energy = OrientationEnergy::extrinsic;
   PositionEnergy position_energy = PositionEnergy::extrinsic;
   FeatureOptions features;  ///< Of meshes: lines that edges follow.
+  /// Curves that edges follow; of point clouds and graphs of faces, that fields are drawn to.
+  std::vector<Guide> guides;
   /// From 0, the best shapes, to 1, the fewest irregular vertices: hardly more than the orientation
   /// field has singularities.
   double regularity = 0.5;

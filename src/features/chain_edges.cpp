@@ -8,6 +8,7 @@ namespace {
 
 /// How strongly orientations and positions are held to a line.
 std::array<float, 2> strengths(LineKind kind, const FeatureOptions& options) {
+  if (kind == LineKind::guide) return {0, 1};  // their directions are their own
   if (kind != LineKind::border) return {options.orient_creases, options.align_creases};
   // Softly: a ragged border turns faster than crosses can.
   constexpr float orient_border = 0.45f;
@@ -75,8 +76,11 @@ class Chaining {
   /// Whether one line goes through a vertex. Creases go on as marked edges: a crease may flatten
   /// out.
   bool goes_on(Index v) const {
-    const auto is_border = [&](Index spoke) { return spokes_[spoke].kind == LineKind::border; };
-    return degree(v) == 2 && is_border(offsets_[v]) == is_border(offsets_[v] + 1);
+    const auto kind = [&](Index spoke) {
+      const LineKind own = spokes_[spoke].kind;
+      return own == LineKind::marked ? LineKind::crease : own;
+    };
+    return degree(v) == 2 && kind(offsets_[v]) == kind(offsets_[v] + 1);
   }
 
   /// The spoke that goes on from v, for who came from `from`.

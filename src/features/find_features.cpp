@@ -1,10 +1,11 @@
-#include <algorithm>
+#include "features/find_features.h"
 
-#include "features/chain_edges.h"
+#include <algorithm>
+#include <array>
+
 #include "features/mechanical_creases.h"
 #include "mesh/border.h"
 #include "mesh/marks.h"
-#include "meshgrain/features.h"
 
 namespace meshgrain {
 namespace {
@@ -31,8 +32,8 @@ bool FeatureLines::is_closed(std::size_t line) const {
   return v == vertices[end(line) - 1] && !std::binary_search(corners.begin(), corners.end(), v);
 }
 
-FeatureLines find_features(const Mesh& mesh, const FeatureOptions& options, double edge_length,
-                           const Context& context) {
+std::vector<EdgeOfLine> feature_edges(const Mesh& mesh, const FeatureOptions& options,
+                                      const Context& context) {
   Edges creases, marked;
   if (options.creases == Creases::automatic) creases = mechanical_creases(mesh, context);
   if (options.creases == Creases::by_angle) {
@@ -46,7 +47,37 @@ FeatureLines find_features(const Mesh& mesh, const FeatureOptions& options, doub
     const bool is_marked = std::binary_search(marked.begin(), marked.end(), ends);
     if (!is_marked) edges.push_back({ends, LineKind::crease});
   }
-  return chain_edges(mesh, edges, options, edge_length);
+  return edges;
+}
+
+FeatureLines find_features(const Mesh& mesh, const FeatureOptions& options,
+                           const GuideLines& guides, double edge_length, const Context& context) {
+  std::vector<EdgeOfLine> edges = feature_edges(mesh, options, context);
+  std::vector<std::array<Index, 2>> others;
+  for (const EdgeOfLine& edge : edges) others.push_back(edge.ends);
+  std::sort(others.begin(), others.end());
+  std::vector<std::uint8_t> on_guide(mesh.positions.size(), 0);
+  for (const EdgeOfLine& edge : guides.edges) {
+    if (std::binary_search(others.begin(), others.end(), edge.ends)) continue;
+    edges.push_back(edge);
+    for (const Index v : edge.ends) on_guide[v] = 1;
+  }
+  FeatureLines lines = chain_edges(mesh, edges, options, edge_length);
+  for (const Index v : lines.corners) on_guide[v] = 0;
+  for (std::size_t k = 0; k < lines.vertices.size(); ++k) {
+    const Index v = lines.vertices[k];
+    if (!on_guide[v]) continue;
+    const auto it =
+        std::lower_bound(guides.vertices.begin(), guides.vertices.end(), v,
+                         [](const GuideLines::Vertex& g, Index w) { return g.vertex < w; });
+    lines.positions[k] = it->position;
+  }
+  return lines;
+}
+
+FeatureLines find_features(const Mesh& mesh, const FeatureOptions& options, double edge_length,
+                           const Context& context) {
+  return chain_edges(mesh, feature_edges(mesh, options, context), options, edge_length);
 }
 
 }  // namespace meshgrain

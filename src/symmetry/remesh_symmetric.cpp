@@ -9,6 +9,7 @@
 #include "meshgrain/surface.h"
 #include "meshgrain/triangulate.h"
 #include "remesh/notes.h"
+#include "symmetry/fold_guides.h"
 
 namespace meshgrain {
 namespace {
@@ -56,6 +57,8 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const Context& 
   if (!planes.empty()) input = triangulate(input);
   for (const MirrorPlane& plane : planes) {
     cut_at(input, plane);
+    // Positions now count from the plane, and are in the units of the input from its origin.
+    options.guides = fold_guides(options.guides, {plane.axis, input.origin[plane.axis], 0});
     options.face_count = (options.face_count + 1) / 2;
     options.vertex_count = (options.vertex_count + 1) / 2;
     // A point beyond the plane has its mirror image on this side.

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "features/cut_guides.h"
+#include "meshgrain/features.h"
+
+namespace meshgrain {
+
+/// The edges of the border and of the creases, each once.
+std::vector<EdgeOfLine> feature_edges(const Mesh& triangles, const FeatureOptions& options,
+                                      const Context& context);
+
+/// The public find_features() with guides that were cut into the mesh. Those that run along a
+/// border or a crease are part of that.
+FeatureLines find_features(const Mesh& triangles, const FeatureOptions& options,
+                           const GuideLines& guides, double edge_length, const Context& context);
+
+}  // namespace meshgrain

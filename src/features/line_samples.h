@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "meshgrain/mesh.h"
+#include "util/hash.h"
+
+namespace meshgrain {
+
+/// Points along lines, found again by their place.
+class LineSamples {
+ public:
+  struct Sample {
+    Eigen::Vector3d position;
+    Eigen::Vector3d direction;  ///< Of the line: a unit vector, of either sign.
+    Eigen::Vector3d normal;     ///< Of the surface, or zero.
+    Index line, number;         ///< Which of its line's samples it is.
+  };
+
+  /// `reach`: the largest distance that will be asked for.
+  explicit LineSamples(double reach) : reach_(reach) {}
+
+  void add(const Sample& sample) {
+    cells_[key(cell(sample.position))].push_back(static_cast<Index>(samples_.size()));
+    samples_.push_back(sample);
+  }
+
+  /// Calls `visit(sample, distance)` for all samples within `radius`, no more than the reach.
+  template <typename Visit>
+  void for_near(const Eigen::Vector3d& p, double radius, const Visit& visit) const {
+    const Cell center = cell(p);
+    for (std::int64_t x = -1; x <= 1; ++x) {
+      for (std::int64_t y = -1; y <= 1; ++y) {
+        for (std::int64_t z = -1; z <= 1; ++z) {
+          const auto found = cells_.find(key(center + Cell(x, y, z)));
+          if (found == cells_.end()) continue;
+          for (const Index s : found->second) {
+            const double distance = (samples_[s].position - p).norm();
+            if (distance <= radius) visit(samples_[s], distance);
+          }
+        }
+      }
+    }
+  }
+
+ private:
+  using Cell = Eigen::Matrix<std::int64_t, 3, 1>;
+
+  Cell cell(const Eigen::Vector3d& p) const {
+    return (p / reach_).array().floor().cast<std::int64_t>();
+  }
+  // Cells that share a key only cost time: distances are looked at anyway.
+  static std::uint64_t key(const Cell& c) {
+    return hash64(static_cast<std::uint64_t>(c[0]),
+                  hash64(static_cast<std::uint64_t>(c[1]), static_cast<std::uint64_t>(c[2])));
+  }
+
+  double reach_;
+  std::vector<Sample> samples_;
+  std::unordered_map<std::uint64_t, std::vector<Index>> cells_;
+};
+
+}  // namespace meshgrain
