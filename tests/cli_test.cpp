@@ -274,6 +274,28 @@ TEST_F(Cli, Features) {
   expect_refused("none.obj -o no.obj --features lines.obj", 2, "point cloud");
 }
 
+TEST_F(Cli, Guides) {
+  sample("plate", "in.obj");
+  const std::string plain = bytes("-f 300");
+  write("stroke.obj", "o Stroke\nv -0.3 -0.3 0\nv 0.3 0.3 0\nl 1 2\n");
+  const std::string followed = bytes("-f 300 --guides stroke.obj");
+  EXPECT_NE(followed, plain);
+  EXPECT_EQ(bytes("-f 300 --guides stroke.obj:1"), followed);
+  const std::string drawn = bytes("-f 300 --guides stroke.obj:0.5");
+  EXPECT_NE(drawn, followed);
+  EXPECT_NE(drawn, plain);
+  write("other.obj", "v -0.3 0.3 0\nv 0.3 -0.2 0\nl 1 2\n");
+  EXPECT_NE(bytes("-f 300 --guides stroke.obj --guides other.obj:0.5"), followed);
+  EXPECT_EQ(bytes("-f 300 --guides stroke.obj:0"), plain);
+
+  write("far.obj", "v -0.3 -0.3 9\nv 0.3 0.3 9\nl 1 2\n");
+  EXPECT_NE(run("in.obj -o no.obj --guides far.obj").err.find("guide 1 lies off the surface"),
+            std::string::npos);
+  EXPECT_NE(run("in.obj -o no.obj --guides in.obj").err.find("has no lines"), std::string::npos);
+  EXPECT_EQ(run("in.obj -o no.obj --guides stroke.obj:2").status, 2);
+  EXPECT_FALSE(exists("no.obj"));
+}
+
 TEST_F(Cli, Sizing) {
   sample("bracket", "in.obj", 0.5);
   const double uniform = statistics("-f 400 -D").area_sigma;

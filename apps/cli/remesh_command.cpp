@@ -35,6 +35,7 @@ struct Arguments {
   bool ignored = false;
   bool target_given = false;
   std::string energy, orientation_energy, sizing = "uniform";
+  std::vector<std::string> guides;
   ReadOptions read;
   RemeshOptions remesh;
 };
@@ -192,6 +193,12 @@ void add_options(CLI::App& app, Arguments& a) {
                      "also the lines in this file, drawn on the input from vertex to vertex: OBJ "
                      "with l, or PLY with edges")
           ->type_name("FILE"));
+  follow(
+      app.add_option("--guides", a.guides,
+                     "curves (the lines of an OBJ or PLY file) that edges follow; FILE:0.5 draws "
+                     "only the fields to them, by so much; may be given again")
+          ->allow_extra_args(false)
+          ->type_name("FILE"));
   follow(app.add_flag("-b,--boundaries,!--free-boundaries", o.features.align_border,
                       "follow the border of an open mesh (yes)"));
   follow(app.add_option_function<std::string>(
@@ -300,6 +307,19 @@ void parse_sizing(Arguments& a) {
     throw UsageError("--sizing \"" + a.sizing +
                      "\" is none of uniform, curvature, distance:X,Y,Z, value:NAME");
   }
+}
+
+/// "FILE" or "FILE:STRENGTH".
+std::vector<Guide> read_guides(const std::string& text, const Context& context) {
+  const std::size_t colon = text.rfind(':');
+  float strength = 1;
+  const bool is_given = colon != text.npos && !std::filesystem::exists(text) &&
+                        CLI::detail::lexical_cast(text.substr(colon + 1), strength);
+  if (!is_given) return guides_of(read_polylines(text, context));
+  if (!(strength >= 0 && strength <= 1)) {
+    throw UsageError("--guides " + file_name(text) + ": the strength must lie between 0 and 1");
+  }
+  return guides_of(read_polylines(text.substr(0, colon), context), strength);
 }
 
 /// What needs more than one option to tell.
@@ -434,6 +454,10 @@ void run(Arguments& a, Context& context) {
     fields = read_fields(a.fields, context);
     check_fields(a, fields);
     a.remesh.fields = &fields;
+  }
+  for (const std::string& text : a.guides) {
+    const std::vector<Guide> guides = read_guides(text, context);
+    a.remesh.guides.insert(a.remesh.guides.end(), guides.begin(), guides.end());
   }
   const double read_seconds = seconds_since(start);
   RemeshResult result = remesh(std::move(input), a.remesh, context);

@@ -110,6 +110,7 @@ Json to_json(const RemeshOptions& o) {
                {"multiresolution", o.solver.multiresolution},
                {"seed", o.solver.seed},
                {"boundaries", o.features.align_border},
+               {"guides", o.guides.size()},
                {"symmetry", symmetry(o.symmetry)},
                {"curvature", o.curvature.strength},
                {"curvature_hard", o.curvature.hard_degrees},
