@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "denoise/denoise.h"
 #include "extract/reduce_faces.h"
 #include "extract/remove_strips.h"
 #include "features/find_features.h"
@@ -90,6 +91,20 @@ class Pipeline {
     });
   }
 
+  /// Without noise if it is a scan of a mechanical part.
+  void sharpen() {
+    if (is_cloud_ || !nodes_are_vertices_) return;
+    if (options_.features.creases != Creases::automatic) return;
+    stage_("noise", [&] {
+      const double length = target_.edge_length(surface_area(surface_));
+      const bool halved = options_.faces == OutputFaces::quads;
+      is_sharpened_ = sharpen_noisy_part(surface_, halved ? length / 2 : length, context_);
+      if (!is_sharpened_) return;
+      result_.report.notes.push_back(
+          "a noisy scan of a mechanical part: its noise was taken out to make its creases sharp");
+    });
+  }
+
   /// Fine enough for the target, and in the order of a curve.
   void refine() {
     if (!is_cloud_) {
@@ -139,6 +154,7 @@ class Pipeline {
       if (options_.orientation_energy != OrientationEnergy::extrinsic) options.orient_creases = 1;
       // Triangles cannot follow two creases that meet at right angles.
       if (posy_of(options_.faces) == 6) options.align_creases = 0.3f;
+      if (is_sharpened_) options.creases = Creases::marked;
       const bool halved = options_.faces == OutputFaces::quads;
       features_ = find_features(surface_, options, guides_,
                                 halved ? mean_length_ / 2 : mean_length_, context_);
@@ -370,6 +386,7 @@ class Pipeline {
   Frame frame_;
   Target target_;
   bool is_cloud_, nodes_are_vertices_;
+  bool is_sharpened_ = false;
   Mesh surface_;
   Hierarchy hierarchy_;
   double mean_length_ = 0;
@@ -389,6 +406,7 @@ RemeshResult remesh(Mesh input, const RemeshOptions& options, const Context& con
   if (options.symmetry.any()) return remesh_symmetric(std::move(input), options, context);
   Pipeline pipeline(input, options, context);
   pipeline.clean_up(std::move(input));
+  pipeline.sharpen();
   pipeline.refine();
   pipeline.build_levels();
   pipeline.size_faces();

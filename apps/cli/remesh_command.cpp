@@ -78,17 +78,19 @@ std::string refuse_unless_finite(const std::string& text) {
   return finite ? "" : "\"" + text + "\" is not a number";
 }
 
-/// "auto", "off" or degrees.
+/// "auto", "marked", "off" or degrees.
 void parse_creases(const std::string& text, FeatureOptions& features) {
   if (text == "auto") {
     features.creases = Creases::automatic;
+  } else if (text == "marked") {
+    features.creases = Creases::marked;
   } else if (text == "off") {
     features.creases = Creases::none;
   } else {
     double& degrees = features.crease_degrees;
     if (!CLI::detail::lexical_cast(text, degrees) || !(degrees >= 0 && degrees <= 180)) {
-      throw CLI::ValidationError("--crease",
-                                 "\"" + text + "\" is none of auto, off, degrees from 0 to 180");
+      throw CLI::ValidationError(
+          "--crease", "\"" + text + "\" is none of auto, marked, off, degrees from 0 to 180");
     }
     features.creases = Creases::by_angle;
   }
@@ -183,11 +185,12 @@ void add_options(CLI::App& app, Arguments& a) {
   faces(app.add_flag("--manifold", o.manifold, "drop faces where the result is not manifold"));
 
   const auto follow = [&](CLI::Option* option) { option->group("What to follow"); };
-  follow(app.add_option_function<std::string>(
-                "-c,--crease", [&o](const std::string& text) { parse_creases(text, o.features); },
-                "creases: auto (of mechanical parts, default), or where the angle between faces is "
-                "larger than this; beside edges that the input marks. off: neither")
-             ->type_name("DEGREES"));
+  follow(
+      app.add_option_function<std::string>(
+             "-c,--crease", [&o](const std::string& text) { parse_creases(text, o.features); },
+             "creases: auto (of mechanical parts, default), or where the angle between faces is "
+             "larger than this; beside edges that the input marks. marked: only these; off: none")
+          ->type_name("DEGREES"));
   follow(
       app.add_option("--features", a.features,
                      "also the lines in this file, drawn on the input from vertex to vertex: OBJ "

@@ -59,6 +59,7 @@ std::string symmetry(const Symmetry& symmetry) {
 
 Json creases(const FeatureOptions& features) {
   if (features.creases == Creases::by_angle) return features.crease_degrees;
+  if (features.creases == Creases::marked) return "marked";
   return features.creases == Creases::automatic ? "auto" : "off";
 }
 

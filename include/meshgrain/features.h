@@ -33,7 +33,8 @@ struct FeatureLines {
 enum class Creases {
   automatic,  ///< Of mechanical parts: edges clearly sharper than all that are meant to be smooth.
   by_angle,
-  none,  ///< Not even marked edges.
+  marked,  ///< Only edges that are marked (Mesh::marked_edges).
+  none,    ///< Not even marked edges.
 };
 
 struct FeatureOptions {

@@ -35,7 +35,7 @@ bool FeatureLines::is_closed(std::size_t line) const {
 std::vector<EdgeOfLine> feature_edges(const Mesh& mesh, const FeatureOptions& options,
                                       const Context& context) {
   Edges creases, marked;
-  if (options.creases == Creases::automatic) creases = mechanical_creases(mesh, context);
+  if (options.creases == Creases::automatic) creases = mechanical_creases(mesh, 1, context);
   if (options.creases == Creases::by_angle) {
     creases = crease_edges(mesh, options.crease_degrees, context);
   }

@@ -8,7 +8,8 @@
 
 namespace meshgrain {
 
-std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh, const Context& context) {
+std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh, double clearly,
+                                                     const Context& context) {
   constexpr double sharp = 40, flat = 10;  // degrees
   const std::vector<SharpEdge> edges = sharp_edges(mesh, flat, context);
   const auto is_above = [](const SharpEdge& edge, double degrees) {
@@ -23,7 +24,7 @@ std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh, const Con
     return sum;
   };
   const double creases = length_above(sharp);
-  if (creases <= length_above(flat) - creases) return {};
+  if (creases <= clearly * (length_above(flat) - creases)) return {};
   // The threshold is where it matters least.
   double threshold = sharp, least = std::numeric_limits<double>::infinity();
   constexpr double lowest = 20, window = 1.25, step = 2;

@@ -10,7 +10,8 @@ namespace meshgrain {
 
 /// The creases of a mechanical part; nothing for a sculpture or a scan, whose sharp edges are
 /// detail or noise. Told by the length of edges of every sharpness: in a part they are either
-/// nearly flat or creases, with little in between.
-std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& triangles, const Context& context);
+/// nearly flat or creases, of which there are `clearly` times as much as of all in between.
+std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& triangles, double clearly,
+                                                     const Context& context);
 
 }  // namespace meshgrain

@@ -39,8 +39,10 @@ class Mending {
     }
     search_.keep_apart({});
     for (const int rings : {2, 3, 5}) {
+      std::size_t tried = 0;
       for (Index f = 0; f < mesh_.faces.size(); ++f) {
         if (search_.quality(f) >= acceptable) continue;
+        if (++tried > std::max(most_tried, mesh_.faces.size() / 100)) break;
         Place place = around(f, f, rings);
         --place.worse;
         if (!reshape(place)) restore(place);
@@ -61,7 +63,7 @@ class Mending {
   static constexpr float acceptable = 0.1f;            // quality of a face
   static constexpr std::size_t largest_to_slide = 80;  // faces of a place: it takes long
   static constexpr std::size_t most_crossings_to_slide = 25;
-  // A mesh with more crossings is too coarse for its surface: no need to try for minutes.
+  // A mesh with more bad places is too coarse for its surface: no need to try for minutes.
   static constexpr std::size_t most_tried = 50;
   static constexpr std::size_t most_searched = 20000;  // faces of the surface in a place
 
@@ -136,8 +138,10 @@ class Mending {
       if (loosen(place, who)) return true;
       restore(place);
     }
-    if (leave_lines(place)) return true;
-    restore(place);
+    if (place.faces.size() <= largest_to_slide) {
+      if (leave_lines(place)) return true;
+      restore(place);
+    }
     return loosen(place, Who::all);
   }
 

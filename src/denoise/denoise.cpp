@@ -1,0 +1,63 @@
+#include "denoise/denoise.h"
+
+#include <utility>
+
+#include "denoise/crease_net.h"
+#include "denoise/join_corners.h"
+#include "denoise/noisy_lines.h"
+#include "denoise/normal_filter.h"
+#include "denoise/sample_patches.h"
+#include "denoise/straighten.h"
+#include "features/mechanical_creases.h"
+#include "mesh/border.h"
+
+namespace meshgrain {
+
+namespace {
+
+/// How many times longer the creases of a part must be than all that is less sharp, once the noise
+/// is out: the filter makes edges of some of what is smooth, too.
+constexpr double clearly = 2;
+
+/// Whether so many edges are no creases and yet not flat that it may be noise.
+bool may_be_noisy(const Mesh& triangles, const Context& context) {
+  constexpr double not_flat = 10, least_share = 0.15;  // degrees; of the length of all edges
+  const auto length = [&](double degrees) {
+    double sum = 0;
+    for (const SharpEdge& edge : sharp_edges(triangles, degrees, context)) {
+      sum += (triangles.positions[edge.ends[0]] - triangles.positions[edge.ends[1]]).norm();
+    }
+    return sum;
+  };
+  constexpr double all = -1;
+  return length(not_flat) > least_share * length(all);
+}
+
+/// Some of the surface tells at once that most scans are no part.
+bool is_noisy_part(const Mesh& triangles, const Context& context) {
+  if (!mechanical_creases(triangles, 1, context).empty()) return false;  // creases without noise
+  if (!may_be_noisy(triangles, context)) return false;
+  constexpr std::size_t patches = 16, faces_each = 1000;
+  Mesh sample = sample_patches(triangles, patches, faces_each, context);
+  NormalFilter(sample, NormalFilter::Border::moves, context).run();
+  constexpr double margin = 0.75;
+  return !mechanical_creases(sample, margin * clearly, context).empty();
+}
+
+}  // namespace
+
+bool sharpen_noisy_part(Mesh& triangles, double edge_length, const Context& context) {
+  if (!is_noisy_part(triangles, context)) return false;
+  Mesh smooth = triangles;
+  NormalFilter(smooth, NormalFilter::Border::stays, context).run();
+  const auto found = mechanical_creases(smooth, clearly, context);
+  if (found.empty()) return false;
+  const auto creases = connect_creases(smooth, found, edge_length, context);
+  smooth.marked_edges.insert(smooth.marked_edges.end(), creases.begin(), creases.end());
+  join_near_corners(smooth, 0.6 * edge_length, context);
+  straighten_lines(smooth, noisy_lines(smooth, edge_length), context);
+  triangles = std::move(smooth);
+  return true;
+}
+
+}  // namespace meshgrain

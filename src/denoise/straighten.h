@@ -1,0 +1,13 @@
+#pragma once
+
+#include "meshgrain/features.h"
+#include "meshgrain/mesh.h"
+
+namespace meshgrain {
+
+/// Moves the vertices of lines between their corners to smooth curves through their neighbours
+/// along the line, as far as no face turns over: lines of a scan go zigzag from one of its
+/// triangles to the next.
+void straighten_lines(Mesh& triangles, const FeatureLines& lines, const Context& context);
+
+}  // namespace meshgrain

@@ -1,0 +1,106 @@
+#include "denoise/denoise.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "kept_creases.h"
+#include "made_points.h"
+#include "meshgrain/remesh.h"
+#include "meshgrain/shapes.h"
+#include "meshgrain/statistics.h"
+#include "meshgrain/surface.h"
+#include "same_topology.h"
+
+namespace meshgrain {
+namespace {
+
+/// Every vertex moved by a fifth of an edge, each in a direction of its own.
+Mesh scan(Mesh mesh, float share = 0.2f) {
+  const auto step = share * static_cast<float>(edge_lengths(mesh).mean);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Vec3 d(made::noise(3 * v), made::noise(3 * v + 1), made::noise(3 * v + 2));
+    mesh.positions[v] += step * d.normalized();
+  }
+  return mesh;
+}
+
+double output_edge(const Mesh& mesh, double faces) {
+  return std::sqrt(surface_area(mesh) / faces);
+}
+
+TEST(Denoise, PartsGetTheirCreasesBack) {
+  for (const char* name : {"cube", "cylinder", "bracket", "shaft", "twisted-cube"}) {
+    SCOPED_TRACE(name);
+    const Mesh part = sample_shape(name, 3);
+    RemeshOptions options;
+    options.face_count = 5000;
+    const RemeshResult result = remesh(scan(part), options);
+    made::expect_same_topology(mesh_statistics(result.mesh), mesh_statistics(part));
+    EXPECT_GE(made::kept_creases(part, result.mesh).creases, 0.96);
+    EXPECT_EQ(result.report.notes.size(), 1u);
+  }
+}
+
+/// Where no edge of the scan lies along a crease.
+TEST(Denoise, CreasesAreFoundBetweenTheSamples) {
+  RemeshOptions triangles;
+  triangles.faces = OutputFaces::triangles;
+  triangles.features.creases = Creases::none;
+  triangles.face_count = 60000;
+  triangles.smoothing = 5;
+  const Mesh part = sample_shape("cube", 2);
+  const Mesh sampled = remesh(part, triangles).mesh;
+  RemeshOptions options;
+  options.face_count = 3000;
+  const Mesh result = remesh(scan(sampled), options).mesh;
+  EXPECT_GE(made::kept_creases(part, result).creases, 0.9);
+}
+
+TEST(Denoise, SurfacesComeNearerToThePart) {
+  const Mesh part = sample_shape("cube", 2);
+  Mesh surface = scan(part);
+  ASSERT_TRUE(sharpen_noisy_part(surface, output_edge(part, 2000), Context()));
+  const auto off = [](const Mesh& mesh) {  // mean distance from the faces of the unit cube
+    double sum = 0;
+    for (const Vec3& p : mesh.positions) sum += std::abs(p.cwiseAbs().maxCoeff() - 0.5f);
+    return sum / static_cast<double>(mesh.positions.size());
+  };
+  EXPECT_LT(off(surface), 0.4 * off(scan(part)));
+}
+
+/// Sculptures, noisy or not, and parts without noise.
+TEST(Denoise, AllElseStaysAsItIs) {
+  for (const char* name : {"sphere", "torus", "blob", "three-holes"}) {
+    for (const float noise : {0.0f, 0.05f, 0.2f, 0.4f}) {
+      const Mesh before = scan(sample_shape(name), noise);
+      Mesh after = before;
+      EXPECT_FALSE(sharpen_noisy_part(after, output_edge(before, 2000), Context())) << name;
+      EXPECT_EQ(after.positions, before.positions);
+      EXPECT_TRUE(after.marked_edges.empty());
+    }
+  }
+  Mesh part = sample_shape("bracket");
+  EXPECT_FALSE(sharpen_noisy_part(part, output_edge(part, 2000), Context()));
+}
+
+TEST(Denoise, CanBeLeftOut) {
+  RemeshOptions options;
+  options.face_count = 2000;
+  options.features.creases = Creases::none;
+  EXPECT_TRUE(remesh(scan(sample_shape("cube", 2)), options).report.notes.empty());
+}
+
+TEST(Denoise, DoesNotDependOnThreads) {
+  Mesh one = scan(sample_shape("bracket", 2)), three = one;
+  const double edge = output_edge(one, 2000);
+  ASSERT_TRUE(sharpen_noisy_part(one, edge, Context(1)));
+  ASSERT_TRUE(sharpen_noisy_part(three, edge, Context(3)));
+  EXPECT_EQ(one.positions, three.positions);
+  EXPECT_EQ(one.marked_edges, three.marked_edges);
+}
+
+}  // namespace
+}  // namespace meshgrain
