@@ -45,6 +45,7 @@ void check(const RemeshOptions& options) {
   if (!(options.min_component >= 0) || !std::isfinite(options.min_component)) {
     throw Error("the least number of faces of a piece must not be negative");
   }
+  if (!(options.sizing.grading > 1)) throw Error("the grading of sizes must be larger than 1");
   if (options.smoothing < 0) throw Error("the number of smoothing iterations must not be negative");
   if (options.solver.sweeps < 1) throw Error("at least one sweep a level is needed");
 }
@@ -111,9 +112,10 @@ class Pipeline {
       stage_("subdivide", [&] {
         const double area = surface_area(surface_);
         if (!(area > 0)) throw Error("the input has no surface: all of its faces are degenerate");
-        // Where faces vary in size, fine enough for the smallest of them.
-        const bool uniform = options_.sizing.kind == Sizing::Kind::uniform;
-        const double length = target_.edge_length(area) / (uniform ? 1 : options_.sizing.ratio);
+        // Where faces vary in size, and nothing can be split later on, fine enough for the smallest.
+        const bool once = !nodes_are_vertices_ || !options_.guides.empty();
+        const bool varied = once && !options_.sizing.is_uniform();
+        const double length = target_.edge_length(area) / (varied ? options_.sizing.ratio : 1);
         const EdgeLengths edges = edge_lengths(surface_);
         const double limit = std::min(length / 2, 2 * edges.mean);
         if (edges.max > limit) subdivide(surface_, limit, context_);
@@ -134,19 +136,14 @@ class Pipeline {
     result_.report.levels = hierarchy_.levels.size();
   }
 
-  void size_faces() {
-    double area = 0;
-    for (const float a : graph().areas) area += a;
-    mean_length_ = target_.edge_length(area);
-    Sizing sizing = options_.sizing;
-    sizing.point = frame_.inside(sizing.point);
-    const EdgeLength relative =
-        relative_edge_lengths(graph(), sizing, surface_.values, mean_length_, context_);
-    lengths_ = target_.edge_lengths(graph(), relative);
-  }
-
   void find_lines() {
-    if (is_cloud_) lay_guides(mean_length_);
+    area_ = 0;
+    for (const float a : graph().areas) area_ += a;
+    mean_length_ = target_.edge_length(area_);
+    if (is_cloud_) {
+      soft_guides_.clear();
+      lay_guides(mean_length_);
+    }
     constraints_ = guide_constraints(graph(), soft_guides_);
     if (is_cloud_ || !nodes_are_vertices_) return;
     stage_("features", [&] {
@@ -155,12 +152,35 @@ class Pipeline {
       // Triangles cannot follow two creases that meet at right angles.
       if (posy_of(options_.faces) == 6) options.align_creases = 0.3f;
       if (is_sharpened_) options.creases = Creases::marked;
-      const bool halved = options_.faces == OutputFaces::quads;
-      features_ = find_features(surface_, options, guides_,
-                                halved ? mean_length_ / 2 : mean_length_, context_);
+      features_ = find_features(surface_, options, guides_, target_.face_side(area_), context_);
       append(feature_constraints(features_));
       append(guide_constraints(guides_, features_.corners));
     });
+  }
+
+  void size_faces() {
+    Sizing sizing = options_.sizing;
+    sizing.point = frame_.inside(sizing.point);
+    const EdgeLength relative = relative_edge_lengths(hierarchy_, surface_, features_, sizing,
+                                                      target_.face_side(area_), context_);
+    lengths_ = target_.edge_lengths(graph(), relative, growth(), context_);
+  }
+
+  /// Finer still where small faces are wanted.
+  void refine_for_sizes() {
+    // Guides are cut into the surface by now.
+    const bool may_split = !is_cloud_ && nodes_are_vertices_ && options_.guides.empty();
+    if (!may_split || lengths_.uniform()) return;
+    surface_.values = std::move(lengths_.values);
+    const bool finer =
+        stage_("subdivide", [&] { return subdivide_by_values(surface_, 0.5, context_); });
+    if (finer) {
+      stage_("order", [&] { sort_along_curve(surface_, context_); });
+      build_levels();
+      find_lines();
+    }
+    lengths_ = EdgeLength(std::exchange(surface_.values, {}));
+    if (finer) lengths_ = graded(graph(), lengths_, growth(), context_);
   }
 
   void orient() {
@@ -210,7 +230,8 @@ class Pipeline {
       const double closing = attempt < 3 ? tolerance : 0.03;
       if (given || (ratio > 1 - tolerance && ratio < 1 + closing)) break;
       const double aim = attempt < 3 ? 1 : 1.01;
-      lengths_ = scaled(lengths_, std::clamp(std::sqrt(ratio / aim), 0.5, 2.0));
+      const double factor = std::clamp(std::sqrt(ratio / aim), 0.5, 2.0);
+      lengths_ = graded(graph(), scaled(lengths_, factor), growth(), context_);
     }
     const double ratio = target_.count_ratio(extraction_.mesh);
     if (ratio > 1 + tolerance && ratio < 1.2) {
@@ -269,11 +290,8 @@ class Pipeline {
       if (options_.faces == OutputFaces::triangles) smoothing.evenness = 0.87;
       if (options_.faces == OutputFaces::quad_dominant) smoothing.evenness = 0.48;
       const EdgeLength& lengths = fields().position.edge_length;
-      if (!lengths.uniform() && nodes_are_vertices_) {
-        std::vector<float> sizes;
-        for (const Index node : extraction_.nodes) sizes.push_back(lengths[node]);
-        smoothing.relative_size = EdgeLength(std::move(sizes));
-      }
+      if (!lengths.uniform() && nodes_are_vertices_) smoothing.relative_size = lengths;
+      smoothing.lift = options_.sizing.adaptive;
       if (!is_cloud_ && nodes_are_vertices_) smoothing.features = &features_;
       smooth(extraction_, surface_, graph(), smoothing, context_);
     });
@@ -332,6 +350,7 @@ class Pipeline {
                                  more.position.end());
   }
 
+  double growth() const { return target_.growth(options_.sizing.grading); }
   const Graph& graph() const { return hierarchy_.levels[0]; }
   Fields& fields() { return result_.fields; }
 
@@ -389,7 +408,7 @@ class Pipeline {
   bool is_sharpened_ = false;
   Mesh surface_;
   Hierarchy hierarchy_;
-  double mean_length_ = 0;
+  double area_ = 0, mean_length_ = 0;
   EdgeLength lengths_;
   GuideLines guides_;                  // that edges follow
   std::vector<GuideRun> soft_guides_;  // that fields are drawn to
@@ -409,8 +428,9 @@ RemeshResult remesh(Mesh input, const RemeshOptions& options, const Context& con
   pipeline.sharpen();
   pipeline.refine();
   pipeline.build_levels();
-  pipeline.size_faces();
   pipeline.find_lines();
+  pipeline.size_faces();
+  pipeline.refine_for_sizes();
   pipeline.orient();
   pipeline.position_and_extract();
   pipeline.count_singularities();

@@ -152,13 +152,24 @@ void add_options(CLI::App& app, Arguments& a) {
   app.get_option("-v")->excludes("-s");
 
   const auto sizes = [&](CLI::Option* option) { option->group("Faces of different sizes"); };
+  sizes(app.add_option("--adaptive", o.sizing.adaptive,
+                       "smaller faces where the surface bends: 0 (off) to 1")
+            ->check(refuse_unless_finite)
+            ->check(CLI::Range(0.0, 1.0))
+            ->type_name("X"));
   sizes(app.add_option("--sizing", a.sizing,
-                       "where faces are small: uniform, curvature (where it bends), distance:X,Y,Z "
+                       "where faces are small: uniform, curvature (--adaptive 1), distance:X,Y,Z "
                        "(near a point) or value:NAME (by a number of the input's PLY vertices)")
             ->type_name("HOW"));
   sizes(app.add_option("--sizing-ratio", o.sizing.ratio, "largest to smallest edge length (4)")
             ->check(refuse_unless_finite)
             ->check(CLI::Range(1.0, 1000.0))
+            ->type_name("R"));
+
+  sizes(app.add_option("--grading", o.sizing.grading,
+                       "sizes grow at most by this factor over three faces (2)")
+            ->check(refuse_unless_finite)
+            ->check(CLI::Range(1.01, 1000.0))
             ->type_name("R"));
 
   const auto faces = [&](CLI::Option* option) {
@@ -305,7 +316,7 @@ void parse_sizing(Arguments& a) {
     sizing.kind = Sizing::Kind::values;
     a.read.value_name = rest;
   } else if (a.sizing == "curvature") {
-    sizing.kind = Sizing::Kind::curvature;
+    sizing.adaptive = 1;
   } else if (a.sizing != "uniform") {
     throw UsageError("--sizing \"" + a.sizing +
                      "\" is none of uniform, curvature, distance:X,Y,Z, value:NAME");

@@ -85,7 +85,7 @@ Json to_json(const RemeshReport& report) {
 }
 
 Json to_json(const RemeshOptions& o) {
-  constexpr const char* sizings[] = {"uniform", "curvature", "distance", "value"};
+  constexpr const char* sizings[] = {"uniform", "distance", "value"};
   constexpr const char* schedules[] = {"blocks", "random", "jacobi"};
   constexpr const char* energies[] = {"extrinsic", "intrinsic", "convex"};
   const bool triangular = o.faces == OutputFaces::triangles || o.faces == OutputFaces::hexagons;
@@ -99,6 +99,8 @@ Json to_json(const RemeshOptions& o) {
                {"vertices", o.vertex_count},
                {"sizing", sizings[static_cast<int>(o.sizing.kind)]},
                {"sizing_ratio", o.sizing.ratio},
+               {"adaptive", o.sizing.adaptive},
+               {"grading", o.sizing.grading},
                {"graph", o.graph.nodes == GraphNodes::faces ? "faces" : "vertices"},
                {"weights", o.graph.weights == GraphWeights::geometric ? "geometric" : "uniform"},
                {"knn", o.graph.neighbors},

@@ -28,16 +28,19 @@ struct SmoothOptions {
   double evenness = 0.65;
   /// The lines that Extraction::line_edges follow; without any, those of the surface's border.
   const FeatureLines* features = nullptr;
-  EdgeLength relative_size{1.0f};  ///< Relative to each other: one, or one a vertex.
+  EdgeLength relative_size{1.0f};  ///< Relative to each other: one, or one a node of the graph.
+  /// From 0 to 1: how far vertices go off the surface in the end, so that faces are not all inside
+  /// of what is convex.
+  double lift = 0;
 };
 
 /// Evens the faces out: each iteration moves every vertex to the mean of where it would be in the
 /// regular polygons that fit its faces best, and back onto the surface. Vertices on feature lines
 /// move along these, and the ones at corners stay. Where a finger or horn of the surface would be
-/// left bare by more than an edge length, a vertex is held out there. At the end single faces that
-/// are turned over, nearly degenerate, or pass through others are mended, however many iterations
-/// there were (unless none). `surface` is the triangle mesh or point cloud that `graph` was built
-/// on.
+/// left bare by more than an edge length there, a vertex is held out there. At the end single faces
+/// that are turned over, nearly degenerate, or pass through others are mended, however many
+/// iterations there were (unless none). `surface` is the triangle mesh or point cloud that `graph`
+/// was built on.
 void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
             const SmoothOptions& options = {}, const Context& context = Context());
 

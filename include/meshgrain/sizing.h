@@ -1,5 +1,6 @@
 #pragma once
 
+#include "meshgrain/features.h"
 #include "meshgrain/fields.h"
 
 namespace meshgrain {
@@ -8,22 +9,35 @@ namespace meshgrain {
 struct Sizing {
   enum class Kind {
     uniform,
-    curvature,  ///< Smaller where the surface bends: by up to `ratio`.
-    distance,   ///< From 1 / `ratio` at `point` to 1 at the far end of the surface.
-    values,     ///< Proportional to the mesh's value at each vertex (Mesh::values, positive).
+    distance,  ///< From 1 / `ratio` at `point` to 1 at the far end of the surface.
+    values,    ///< Proportional to the mesh's value at each vertex (Mesh::values, positive).
   };
   Kind kind = Kind::uniform;
+  /// From 0 to 1: how much smaller faces are where the surface bends. At 1 they are as the least
+  /// mean distance to the surface wants them. Multiplies what `kind` says.
+  double adaptive = 0;
+  /// The longest edge length to the shortest, by distance, and at most by bending.
   float ratio = 4;
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< In input coordinates.
+  /// Lengths grow at most by this factor over three faces.
+  double grading = 2;
+
+  bool is_uniform() const { return kind == Kind::uniform && adaptive == 0; }
 };
 
-/// Relative edge lengths for the nodes of a graph, evened out so that neighbours differ little; one
-/// value if the sizing is uniform. `edge_length` is the mean that the curvature is measured
-/// against, and `point` is relative to the graph's positions. Throws Error if values are wanted and
-/// missing or not positive.
-EdgeLength relative_edge_lengths(const Graph& graph, const Sizing& sizing,
-                                 const std::vector<float>& values, double edge_length,
-                                 const Context& context = Context());
+/// Relative edge lengths for the nodes of a hierarchy's finest graph; one value if the sizing is
+/// uniform. The graph is that of `surface` (Mesh::values are read), `creases` are lines at which
+/// its bending does not count, and `face_side` is the mean side of the faces that are wanted.
+/// `point` is relative to the graph's positions. Throws Error if values are wanted and missing or
+/// not positive.
+EdgeLength relative_edge_lengths(const Hierarchy& hierarchy, const Mesh& surface,
+                                 const FeatureLines& creases, const Sizing& sizing,
+                                 double face_side, const Context& context = Context());
+
+/// The largest lengths that are nowhere longer than `lengths`, and differ between neighbours by at
+/// most `growth` times their distance.
+EdgeLength graded(const Graph& graph, const EdgeLength& lengths, double growth,
+                  const Context& context = Context());
 
 /// The factor that makes the relative lengths `relative` give faces of `face_area` edge lengths
 /// squared, `count` in all.

@@ -2,71 +2,136 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <queue>
+#include <utility>
 
-#include "meshgrain/curvature.h"
+#include "field/bending.h"
 #include "meshgrain/error.h"
 
 namespace meshgrain {
 namespace {
 
-/// Rounds of averaging with the neighbours, on a logarithmic scale.
-void even_out(const Graph& graph, std::vector<float>& lengths, int rounds, const Context& context) {
-  for (float& length : lengths) length = std::log(length);
-  std::vector<float> next(lengths.size());
-  for (int round = 0; round < rounds; ++round) {
-    context.for_ranges(graph.size(), 4096, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        float sum = lengths[i];
-        for (const Index j : graph.neighbors_of(i)) sum += lengths[j];
-        next[i] = sum / static_cast<float>(graph.neighbors_of(i).size() + 1);
-      }
-    });
-    lengths.swap(next);
+/// A chord of length h leaves a surface of curvature k by about k h² / 8. The mean square of that
+/// over the surface is least, for a given number of faces (the integral of 1 / h²), if h is
+/// proportional to the cube root of 1 / k. Besides, what is round must have room for some faces
+/// around it, else its ends are lost.
+std::vector<float> lengths_by_bending(const Hierarchy& hierarchy, const Mesh& surface,
+                                      const FeatureLines& creases, const Sizing& sizing,
+                                      double face_side, const Context& context) {
+  const Graph& graph = hierarchy.levels[0];
+  const double patch = 0.5 * face_side;  // finer bends than this are noise to such faces
+  const auto bends = bending(hierarchy, surface, creases, patch * patch, context);
+  double sum = 0, area = 0;
+  for (std::size_t i = 0; i < bends.size(); ++i) {
+    sum += static_cast<double>(graph.areas[i]) * bends[i];
+    area += graph.areas[i];
   }
-  for (float& length : lengths) length = std::exp(length);
+  std::vector<float> lengths(bends.size(), 1.0f);
+  if (!(sum > 0)) return lengths;
+  const double exponent = sizing.adaptive / 3;
+  const double around = 1.0 / sizing.adaptive;  // the longest face side times the bending
+  const double shortest = std::pow(sizing.ratio, -sizing.adaptive);
+  const double spread = std::pow(sizing.ratio, sizing.adaptive / 2);
+  std::vector<float> most(bends.size());
+  for (std::size_t i = 0; i < bends.size(); ++i) {
+    const double longest = around / std::max(bends[i] * face_side, 1e-9);
+    most[i] = static_cast<float>(std::max(longest, shortest));
+  }
+  // What lies between creases may be narrow, however flat.
+  for (const Index i : creases.vertices) most[i] = std::min(most[i], 1.0f);
+  // So that the count is that of sides of length 1, as the second bound is not relative.
+  constexpr int rounds = 6;
+  double scale = 1;
+  for (int round = 0; round < rounds; ++round) {
+    double cells = 0;
+    for (std::size_t i = 0; i < bends.size(); ++i) {
+      const double bend = std::max(bends[i] * area / sum, 1e-9);
+      const double wanted = scale * std::clamp(std::pow(bend, -exponent), 1 / spread, spread);
+      lengths[i] = std::min(static_cast<float>(wanted), most[i]);
+      cells += graph.areas[i] / (static_cast<double>(lengths[i]) * lengths[i]);
+    }
+    scale *= std::sqrt(cells / area);
+  }
+  return lengths;
+}
+
+void multiply_by_values(std::vector<float>& lengths, const std::vector<float>& values) {
+  if (values.size() != lengths.size()) {
+    throw Error("edge lengths by value need one value a vertex");
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!(values[i] > 0) || !std::isfinite(values[i])) {
+      throw Error("edge lengths by value need positive numbers: vertex " + std::to_string(i) +
+                  " has " + std::to_string(values[i]));
+    }
+    lengths[i] *= values[i];
+  }
+}
+
+void multiply_by_distance(std::vector<float>& lengths, const Graph& graph, const Sizing& sizing) {
+  const Vec3 point = sizing.point.cast<float>();
+  float farthest = 0;
+  for (const Vec3& p : graph.positions) farthest = std::max(farthest, (p - point).norm());
+  if (!(farthest > 0)) return;
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    const float t = (graph.positions[i] - point).norm() / farthest;
+    lengths[i] *= (1 + (sizing.ratio - 1) * t) / sizing.ratio;
+  }
 }
 
 }  // namespace
 
-EdgeLength relative_edge_lengths(const Graph& graph, const Sizing& sizing,
-                                 const std::vector<float>& values, double edge_length,
-                                 const Context& context) {
-  if (sizing.kind == Sizing::Kind::uniform) return EdgeLength(1.0f);
+EdgeLength relative_edge_lengths(const Hierarchy& hierarchy, const Mesh& surface,
+                                 const FeatureLines& creases, const Sizing& sizing,
+                                 double face_side, const Context& context) {
+  if (sizing.is_uniform()) return EdgeLength(1.0f);
   if (!(sizing.ratio >= 1)) throw Error("the ratio of edge lengths must be at least 1");
-  const std::size_t n = graph.size();
-  std::vector<float> lengths(n, 1.0f);
-  if (sizing.kind == Sizing::Kind::values) {
-    if (values.size() != n) throw Error("edge lengths by value need one value a vertex");
-    for (std::size_t i = 0; i < n; ++i) {
-      if (!(values[i] > 0) || !std::isfinite(values[i])) {
-        throw Error("edge lengths by value need positive numbers: vertex " + std::to_string(i) +
-                    " has " + std::to_string(values[i]));
-      }
-      lengths[i] = values[i];
-    }
-  } else if (sizing.kind == Sizing::Kind::distance) {
-    const Vec3 point = sizing.point.cast<float>();
-    float farthest = 0;
-    for (const Vec3& p : graph.positions) farthest = std::max(farthest, (p - point).norm());
-    if (farthest > 0) {
-      for (std::size_t i = 0; i < n; ++i) {
-        const float t = (graph.positions[i] - point).norm() / farthest;
-        lengths[i] = (1 + (sizing.ratio - 1) * t) / sizing.ratio;
-      }
-    }
-  } else {
-    const Curvature curvature = estimate_curvature(graph.offsets, graph.neighbors, graph.positions,
-                                                   graph.normals, context, 2);
-    for (std::size_t i = 0; i < n; ++i) {
-      // An edge that spans a given angle is as long as the radius is; the clamp keeps flat parts
-      // from growing and noise from shrinking without bound.
-      const float bend = std::fabs(curvature.kmax[i]) * static_cast<float>(edge_length);
-      const float spread = std::sqrt(sizing.ratio);
-      lengths[i] = std::clamp(0.35f / std::max(bend, 1e-6f), 1 / spread, spread);
-    }
-    even_out(graph, lengths, 20, context);
+  if (!(sizing.adaptive >= 0 && sizing.adaptive <= 1)) {
+    throw Error("the adaptivity of sizes must lie between 0 and 1");
   }
+  const Graph& graph = hierarchy.levels[0];
+  std::vector<float> lengths(graph.size(), 1.0f);
+  if (sizing.adaptive > 0) {
+    lengths = lengths_by_bending(hierarchy, surface, creases, sizing, face_side, context);
+  }
+  if (sizing.kind == Sizing::Kind::values) multiply_by_values(lengths, surface.values);
+  if (sizing.kind == Sizing::Kind::distance) multiply_by_distance(lengths, graph, sizing);
   return EdgeLength(std::move(lengths));
+}
+
+EdgeLength graded(const Graph& graph, const EdgeLength& lengths, double growth,
+                  const Context& context) {
+  if (lengths.uniform()) return lengths;
+  // Dijkstra's algorithm from all nodes at once, but those that cannot shorten a neighbour wait.
+  std::vector<float> result = lengths.values;
+  using Entry = std::pair<float, Index>;
+  const auto limit = [&](Index i, Index j) {
+    const double distance = (graph.positions[i] - graph.positions[j]).norm();
+    return static_cast<float>(result[i] + growth * distance);
+  };
+  std::vector<Entry> sources;
+  for (Index i = 0; i < graph.size(); ++i) {
+    const auto around = graph.neighbors_of(i);
+    if (std::any_of(around.begin(), around.end(), [&](Index j) { return result[j] > limit(i, j); }))
+      sources.push_back({result[i], i});
+  }
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue(std::greater<>(),
+                                                                       std::move(sources));
+  std::size_t done = 0;
+  while (!queue.empty()) {
+    const auto [length, i] = queue.top();
+    queue.pop();
+    if (length > result[i]) continue;
+    if ((++done & 0xffff) == 0) context.check();
+    for (const Index j : graph.neighbors_of(i)) {
+      const float most = limit(i, j);
+      if (!(most < result[j])) continue;
+      result[j] = most;
+      queue.push({most, j});
+    }
+  }
+  return EdgeLength(std::move(result));
 }
 
 double length_for_count(const Graph& graph, const EdgeLength& relative, double face_area,

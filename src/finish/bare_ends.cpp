@@ -72,7 +72,8 @@ float distance_to_star(const Vec3& p, const Mesh& mesh, const VertexFaces& aroun
 }  // namespace
 
 std::vector<Reach> find_bare_ends(const Extraction& extraction, const VertexFaces& around,
-                                  const Graph& graph, float reach, const Context& context) {
+                                  const Graph& graph, const EdgeLength& reach,
+                                  const Context& context) {
   const Ways ways = ways_from_vertices(extraction, graph, context);
   struct Tip {
     float distance;
@@ -80,7 +81,7 @@ std::vector<Reach> find_bare_ends(const Extraction& extraction, const VertexFace
   };
   std::vector<Tip> tips;
   for (Index i = 0; i < graph.size(); ++i) {
-    if (!(ways.length[i] > reach) || ways.vertex[i] == no_index) continue;
+    if (!(ways.length[i] > reach[i]) || ways.vertex[i] == no_index) continue;
     const auto neighbors = graph.neighbors_of(i);
     if (std::any_of(neighbors.begin(), neighbors.end(),
                     [&](Index j) { return ways.length[j] > ways.length[i]; })) {
@@ -88,7 +89,7 @@ std::vector<Reach> find_bare_ends(const Extraction& extraction, const VertexFace
     }
     const float distance =
         distance_to_star(graph.positions[i], extraction.mesh, around, ways.vertex[i]);
-    if (distance > reach) tips.push_back({distance, i});
+    if (distance > reach[i]) tips.push_back({distance, i});
   }
   std::sort(tips.begin(), tips.end(), [](const Tip& a, const Tip& b) {
     return std::pair(b.distance, a.node) < std::pair(a.distance, b.node);
@@ -97,22 +98,24 @@ std::vector<Reach> find_bare_ends(const Extraction& extraction, const VertexFace
   std::vector<Vec3> taken;
   for (const Tip& tip : tips) {
     const Vec3& end = graph.positions[tip.node];
+    const float radius = reach[tip.node];
     if (std::any_of(taken.begin(), taken.end(),
-                    [&](const Vec3& other) { return (end - other).norm() < 2 * reach; })) {
+                    [&](const Vec3& other) { return (end - other).norm() < 2 * radius; })) {
       continue;
     }
     taken.push_back(end);
     // Back from the tip until it is far enough.
     const auto distance = [&](Index i) { return (graph.positions[i] - end).norm(); };
     Index node = tip.node, outer = tip.node;
-    while (distance(node) < reach && ways.before[node] != no_index) {
+    while (distance(node) < radius && ways.before[node] != no_index) {
       outer = std::exchange(node, ways.before[node]);
     }
-    const float under = distance(node) - reach, over = reach - distance(outer);
+    const float under = distance(node) - radius, over = radius - distance(outer);
     const float share = under > 0 ? under / (under + over) : 0.0f;
     result.push_back(
         {ways.vertex[tip.node], share < 0.5f ? node : outer,
-         graph.positions[node] + share * (graph.positions[outer] - graph.positions[node]), end});
+         graph.positions[node] + share * (graph.positions[outer] - graph.positions[node]), end,
+         radius});
   }
   return result;
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "finish/bare_ends.h"
+#include "finish/lift.h"
 #include "finish/local_search.h"
 #include "finish/mend_places.h"
 #include "finish/placement.h"
@@ -100,9 +101,13 @@ class Smoother {
   /// Mends single faces that are turned over, nearly degenerate, or pass through others.
   void mend();
 
+  /// Off the surface, so that the faces lie on both sides of it.
+  void lift();
+
  private:
   template <typename Body>
   void for_vertices(const Body& body) const;
+  void look_up_sizes();
   void fit_polygons(float side);
   Vec3 mean_target(Index v) const;
 
@@ -114,6 +119,7 @@ class Smoother {
   const Context& context_;
   Placement placement_;
   VertexFaces around_;
+  EdgeLength sizes_{1.0f};      // relative, of the vertices where they are
   std::vector<Vec3> previous_;  // positions, one iteration ago
   std::vector<Vec3> targets_;   // of every corner of a face
   std::vector<Vec3> normals_;   // of the surface
@@ -133,6 +139,7 @@ Smoother::Smoother(Extraction& extraction, const Mesh& surface, const Graph& gra
   previous_.resize(mesh_.positions.size());
   for_vertices([&](std::size_t v) { previous_[v] = placement_.place(mesh_.positions[v], v); });
   mesh_.positions = previous_;
+  look_up_sizes();
 }
 
 template <typename Body>
@@ -140,6 +147,13 @@ void Smoother::for_vertices(const Body& body) const {
   context_.for_ranges(mesh_.positions.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) body(v);
   });
+}
+
+void Smoother::look_up_sizes() {
+  if (options_.relative_size.uniform()) return;
+  sizes_.values.resize(mesh_.positions.size());
+  for_vertices(
+      [&](std::size_t v) { sizes_.values[v] = options_.relative_size[extraction_.nodes[v]]; });
 }
 
 void Smoother::fit_polygons(float side) {
@@ -151,7 +165,7 @@ void Smoother::fit_polygons(float side) {
       float relative = 0;
       Vec3 upward = Vec3::Zero();
       for (const Index v : face) {
-        relative += options_.relative_size[v];
+        relative += sizes_[v];
         upward += normals_[v];
       }
       relative /= static_cast<float>(face.size());
@@ -190,7 +204,7 @@ void Smoother::iterate(int iterations) {
   for (int iteration = 1; iteration <= iterations; ++iteration) {
     context_.progress("smoothing", static_cast<double>(iteration) / iterations);
     const bool exact = iteration % (on_plane + 1) == 1 || iteration == iterations;
-    const float side = mean_side(mesh_, options_.relative_size);
+    const float side = mean_side(mesh_, sizes_);
     fit_polygons(side);
     for_vertices([&](std::size_t v) {
       const Vec3& p = mesh_.positions[v];
@@ -204,11 +218,14 @@ void Smoother::iterate(int iterations) {
       next[v] = placement_.place(q, v);
       if (!exact) return;
       is_smooth[v] = iteration > 1 && placement_.is_free(v) &&
-                     (next[v] - beside).norm() < smooth_enough * side;
+                     (next[v] - beside).norm() < smooth_enough * side * sizes_[v];
       touched[v] = next[v];
     });
-    // What touched there has the normal there.
-    if (exact) for_vertices([&](std::size_t v) { normals_[v] = placement_.normal(v); });
+    // What touched there has the normal there, and the size.
+    if (exact) {
+      for_vertices([&](std::size_t v) { normals_[v] = placement_.normal(v); });
+      look_up_sizes();
+    }
     previous_.swap(mesh_.positions);
     mesh_.positions.swap(next);
   }
@@ -216,10 +233,13 @@ void Smoother::iterate(int iterations) {
 
 void Smoother::hold_ends() {
   if (!nodes_are_vertices_) return;
-  const float reach = 0.9f * mean_side(mesh_, options_.relative_size);
+  constexpr float share = 0.9f;
+  const float side = mean_side(mesh_, sizes_);
+  EdgeLength reach = options_.relative_size;
+  for (float& length : reach.values) length *= share * side;
   for (const Reach& end : find_bare_ends(extraction_, around_, graph_, reach, context_)) {
     if (!placement_.is_free(end.vertex) && !placement_.is_tethered(end.vertex)) continue;
-    placement_.tether(end.vertex, end.position, end.node, end.tip, reach);
+    placement_.tether(end.vertex, end.position, end.node, end.tip, end.radius);
     previous_[end.vertex] = end.position;
   }
 }
@@ -229,6 +249,10 @@ void Smoother::mend() {
   LocalSearch search(extraction_, around_, placement_);
   untangle(mesh_, around_, search, context_);
   mend_places(mesh_, around_, placement_, search, context_);
+}
+
+void Smoother::lift() {
+  if (options_.lift > 0) lift_vertices(extraction_, around_, placement_, options_.lift, context_);
 }
 
 }  // namespace
@@ -249,6 +273,7 @@ void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
     smoother.iterate(options.iterations * (part + 1) / parts - options.iterations * part / parts);
   }
   smoother.mend();
+  smoother.lift();
 }
 
 }  // namespace meshgrain

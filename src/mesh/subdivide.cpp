@@ -23,9 +23,10 @@ struct Midpoints {
   }
 };
 
-Midpoints long_edges(const Mesh& mesh, float max_length) {
+/// `limit(a, b)`: the longest that the edge between two vertices may be.
+template <typename Limit>
+Midpoints long_edges(const Mesh& mesh, const Limit& limit) {
   const VertexFaces around = vertex_faces(mesh);
-  const float limit = max_length * max_length;
   Midpoints result;
   result.offsets.reserve(mesh.positions.size() + 1);
   result.offsets.push_back(0);
@@ -34,7 +35,9 @@ Midpoints long_edges(const Mesh& mesh, float max_length) {
     others.clear();
     for (const Index f : around[a]) {
       for (const Index b : mesh.faces[f]) {
-        if (b > a && (mesh.positions[b] - mesh.positions[a]).squaredNorm() > limit) {
+        if (b <= a) continue;
+        const float longest = limit(a, b);
+        if ((mesh.positions[b] - mesh.positions[a]).squaredNorm() > longest * longest) {
           others.push_back(b);
         }
       }
@@ -106,15 +109,15 @@ void split(const std::vector<Vec3>& positions, std::array<Index, 3> v, std::arra
   }
 }
 
-}  // namespace
-
-void subdivide(Mesh& mesh, double max_length, const Context& context) {
-  if (mesh.faces.empty()) return;
+/// Returns whether any edge was split.
+template <typename Limit>
+bool split_long_edges(Mesh& mesh, const Limit& limit, const Context& context) {
+  if (mesh.faces.empty()) return false;
   // Each round halves what is too long, so 64 rounds pass any finite length in single precision.
   for (int round = 0; round < 64; ++round) {
     context.check();
-    const Midpoints midpoints = long_edges(mesh, static_cast<float>(max_length));
-    if (midpoints.ends.empty()) return;
+    const Midpoints midpoints = long_edges(mesh, limit);
+    if (midpoints.ends.empty()) return round > 0;
     const auto old_count = static_cast<Index>(mesh.positions.size());
     if (midpoints.ends.size() + old_count > 0xfffffff0u) {
       throw Error(
@@ -141,6 +144,22 @@ void subdivide(Mesh& mesh, double max_length, const Context& context) {
     mesh.faces = std::move(finer);
     split_marks(midpoints, old_count, mesh);
   }
+  return true;
+}
+
+}  // namespace
+
+void subdivide(Mesh& mesh, double max_length, const Context& context) {
+  const auto longest = static_cast<float>(max_length);
+  split_long_edges(
+      mesh, [&](Index, Index) { return longest; }, context);
+}
+
+bool subdivide_by_values(Mesh& mesh, double factor, const Context& context) {
+  const auto share = static_cast<float>(factor);
+  return split_long_edges(
+      mesh, [&](Index a, Index b) { return share * std::min(mesh.values[a], mesh.values[b]); },
+      context);
 }
 
 }  // namespace meshgrain

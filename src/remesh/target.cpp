@@ -19,6 +19,7 @@ Target::Target(const RemeshOptions& options, std::size_t input_vertices, double 
   kind_ = options.faces;
   const bool split = options.faces == OutputFaces::quads;
   const bool dual = options.faces == OutputFaces::hexagons;
+  sides_ = split ? 2 : 1;
   faces_per_cell_ = split ? 4 : options.faces == OutputFaces::triangles ? 2 : 1;
   const double vertices_per_cell = split ? 4 : dual ? 2 : 1;
   if (options.edge_length > 0) {
@@ -44,9 +45,31 @@ double Target::face_area(double area) const {
   return length * length * cell_area_ / faces_per_cell_;
 }
 
-EdgeLength Target::edge_lengths(const Graph& graph, const EdgeLength& relative) const {
-  return scaled(relative,
-                cells_ > 0 ? length_for_count(graph, relative, cell_area_, cells_) : length_);
+double Target::face_side(double area) const {
+  return edge_length(area) / sides_;
+}
+
+double Target::growth(double grading) const {
+  // Sides that grow as exp(r n) over n faces in a row grow by r with the distance.
+  return sides_ * std::log(grading) / 3;
+}
+
+EdgeLength Target::edge_lengths(const Graph& graph, const EdgeLength& relative, double growth,
+                                const Context& context) const {
+  const auto factor = [&](const EdgeLength& lengths) {
+    return cells_ > 0 ? length_for_count(graph, lengths, cell_area_, cells_) : length_;
+  };
+  if (relative.uniform()) return scaled(relative, factor(relative));
+  // What grading takes from the long edges makes for more faces, so that all grow a little.
+  constexpr int rounds = 8;
+  constexpr double near_enough = 1.002;
+  EdgeLength lengths = graded(graph, scaled(relative, factor(relative)), growth, context);
+  for (int round = 1; round < rounds && cells_ > 0; ++round) {
+    const double missing = factor(lengths);
+    if (missing < near_enough) break;
+    lengths = graded(graph, scaled(lengths, missing), growth, context);
+  }
+  return lengths;
 }
 
 double Target::count_ratio(const Mesh& mesh) const {

@@ -21,8 +21,17 @@ class Target {
   /// The area of one face of the written mesh, if the surface has this area.
   double face_area(double area) const;
 
-  /// The edge length at every node of a graph, varying as `relative` does.
-  EdgeLength edge_lengths(const Graph& graph, const EdgeLength& relative) const;
+  /// The mean side of the written faces, if the surface has this area: of quads, or of the
+  /// triangles that hexagons are dual to.
+  double face_side(double area) const;
+
+  /// How fast edge lengths may grow with the distance, for faces to grow by the factor `grading`
+  /// over three of them.
+  double growth(double grading) const;
+
+  /// The edge length at every node of a graph, varying as `relative` does, but at most by `growth`.
+  EdgeLength edge_lengths(const Graph& graph, const EdgeLength& relative, double growth,
+                          const Context& context) const;
 
   /// How many faces or vertices a mesh has for one that was asked for; 1 if it went by length. For
   /// pure quads the mesh is the one before it is split.
@@ -35,6 +44,7 @@ class Target {
   double cells_ = 0;      // wanted squares, or pairs of triangles; 0: by length
   double length_ = 0;     // wanted lattice edge length, if by length
   double cell_area_ = 1;  // in squared edge lengths
+  double sides_ = 1;      // of faces a lattice edge
   double faces_per_cell_ = 1;
   OutputFaces kind_ = OutputFaces::quads;
   double faces_ = 0, vertices_ = 0;  // wanted; 0 if not what was asked for

@@ -1,0 +1,219 @@
+#include "meshgrain/sizing.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "field/bending.h"
+#include "made_graph.h"
+#include "meshgrain/error.h"
+#include "meshgrain/remesh.h"
+#include "meshgrain/statistics.h"
+#include "meshgrain/surface.h"
+
+namespace meshgrain {
+namespace {
+
+constexpr OutputFaces kinds[] = {OutputFaces::quads, OutputFaces::quad_dominant,
+                                 OutputFaces::triangles};
+
+/// How strongly each vertex of a mesh bends, over patches of this area.
+std::vector<float> bends(const Mesh& mesh, double area) {
+  return bending(build_hierarchy(build_graph(mesh)), mesh, {}, area, Context());
+}
+
+/// The largest error of what is told of the vertices of a mesh, relative to what should be.
+template <typename Truth>
+double worst_error(const Mesh& mesh, double area, const Truth& truth) {
+  const std::vector<float> found = bends(mesh, area);
+  double worst = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    worst = std::max(worst, std::abs(found[i] / truth(mesh.positions[i]) - 1));
+  }
+  return worst;
+}
+
+TEST(Bending, OfASphere) {
+  Mesh mesh = sample_shape("sphere", 2);
+  for (Vec3& p : mesh.positions) p *= 0.5f;
+  const auto truth = [](const Vec3&) { return 2 * std::sqrt(2.0); };
+  EXPECT_LT(worst_error(mesh, 0.01, truth), 0.08);
+  // Flat triangles between edges are no less round.
+  subdivide(mesh, 0.3 * edge_lengths(mesh).mean);
+  EXPECT_LT(worst_error(mesh, 0.01, truth), 0.08);
+  // Nor is noise rounder: of a hundredth of the radius, over edges of a twentieth.
+  EXPECT_LT(worst_error(made::shaken(sample_shape("sphere", 2), 0.005f), 0.3,
+                        [](const Vec3&) { return std::sqrt(2.0); }),
+            0.2);
+}
+
+TEST(Bending, OfATorus) {
+  const Mesh mesh = sample_shape("torus", 2);
+  EXPECT_LT(worst_error(mesh, 0.004,
+                        [](const Vec3& p) {
+                          const double radius = std::hypot(p.x(), p.y());
+                          const double around = (radius - 1) / 0.4 / radius;
+                          return std::hypot(around, 1 / 0.4);
+                        }),
+            0.08);
+}
+
+TEST(Bending, IsNotThatOfCreases) {
+  const Mesh mesh = sample_shape("cube", 1);
+  const Hierarchy hierarchy = build_hierarchy(build_graph(mesh));
+  const FeatureLines creases = find_features(mesh, {}, 0.1);
+  ASSERT_FALSE(creases.empty());
+  for (const float bend : bending(hierarchy, mesh, creases, 0.01, Context())) {
+    EXPECT_NEAR(bend, 0, 1e-4);
+  }
+  const std::vector<float> with_them = bends(mesh, 0.01);
+  EXPECT_GT(*std::max_element(with_them.begin(), with_them.end()), 5);
+}
+
+TEST(Grading, IsTheLargestBelowThatGrowsSoSlowly) {
+  const Graph graph = made::noisy_graph();
+  std::vector<float> lengths;
+  for (std::size_t i = 0; i < graph.size(); ++i) {
+    lengths.push_back(i % 53 == 0 ? 0.01f : 0.5f + 0.3f * made::noise(i));
+  }
+  const double growth = 0.25;
+  const EdgeLength found = graded(graph, EdgeLength(lengths), growth);
+  // The plainest form: until nothing changes.
+  std::vector<float> expected = lengths;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (Index i = 0; i < graph.size(); ++i) {
+      for (const Index j : graph.neighbors_of(i)) {
+        const double distance = (graph.positions[i] - graph.positions[j]).norm();
+        const auto most = static_cast<float>(expected[j] + growth * distance);
+        if (expected[i] <= most) continue;
+        expected[i] = most;
+        changed = true;
+      }
+    }
+  }
+  EXPECT_EQ(found.values, expected);
+  EXPECT_NE(found.values, lengths);
+}
+
+/// A plate whose wanted lengths jump from 1 to 6 at x = 0.
+Mesh jumping_plate() {
+  Mesh plate = sample_shape("plate");
+  for (const Vec3& p : plate.positions) plate.values.push_back(p.x() < 0 ? 1.0f : 6.0f);
+  return plate;
+}
+
+TEST(Grading, BoundsTheGrowthOverThreeFaces) {
+  for (const OutputFaces kind : kinds) {
+    for (const double grading : {1.3, 2.0}) {
+      SCOPED_TRACE(std::to_string(static_cast<int>(kind)) + " " + std::to_string(grading));
+      RemeshOptions options;
+      options.faces = kind;
+      options.face_count = 900;
+      options.sizing.kind = Sizing::Kind::values;
+      options.sizing.grading = grading;
+      const RemeshResult result = remesh(jumping_plate(), options);
+      EXPECT_NEAR(static_cast<double>(result.mesh.faces.size()), 900, 9);
+      // Lengths of the lattice, twice as long as the sides of pure quads.
+      const double sides = kind == OutputFaces::quads ? 2 : 1;
+      const auto& lengths = result.fields.position.edge_length.values;
+      const Graph graph = build_graph(result.fields.surface);
+      ASSERT_EQ(lengths.size(), graph.size());
+      double steepest = 0;
+      for (Index i = 0; i < graph.size(); ++i) {
+        for (const Index j : graph.neighbors_of(i)) {
+          const double distance = (graph.positions[i] - graph.positions[j]).norm();
+          steepest = std::max(steepest, (lengths[i] - lengths[j]) / distance);
+        }
+      }
+      const double growth = sides * std::log(grading) / 3;
+      EXPECT_LT(steepest, growth + 1e-4);
+      EXPECT_GT(steepest, 0.95 * growth);
+      const auto [least, most] = std::minmax_element(lengths.begin(), lengths.end());
+      EXPECT_GT(*most / *least, grading == 2 ? 4 : 2);
+    }
+  }
+}
+
+RemeshOptions adaptive(double adaptive, std::size_t faces, OutputFaces kind = OutputFaces::quads) {
+  RemeshOptions options;
+  options.faces = kind;
+  options.face_count = faces;
+  options.sizing.adaptive = adaptive;
+  return options;
+}
+
+TEST(Adaptive, FacesAreAsLargeAsTheCurvatureSays) {
+  // An ellipsoid of half axes 3, 1 and 1: curvatures 3 and 3 at its ends, 1 and 1/9 in between.
+  Mesh ellipsoid = sample_shape("sphere");
+  for (Vec3& p : ellipsoid.positions) p.x() *= 3;
+  const double expected = std::pow(3 * std::sqrt(2.0) / std::hypot(1.0, 1.0 / 9), 2.0 / 3);
+  for (const OutputFaces kind : kinds) {
+    SCOPED_TRACE(static_cast<int>(kind));
+    const Mesh mesh = remesh(ellipsoid, adaptive(1, 3000, kind)).mesh;
+    EXPECT_NEAR(static_cast<double>(mesh.faces.size()), 3000, 30);
+    double area[2] = {0, 0}, count[2] = {0, 0};
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+      const float x = std::abs(mesh.positions[mesh.faces[f][0]].x());
+      if (x > 0.6f && x < 2.9f) continue;
+      const bool at_end = x >= 2.9f;
+      area[at_end] += face_area(mesh, f);
+      count[at_end] += 1;
+    }
+    ASSERT_GT(count[1], 20);
+    EXPECT_NEAR((area[0] / count[0]) / (area[1] / count[1]) / expected, 1, 0.25);
+  }
+}
+
+TEST(Adaptive, IsNearerToTheSurface) {
+  for (const char* name : {"blob", "three-holes"}) {
+    SCOPED_TRACE(name);
+    const Mesh input = sample_shape(name, 1);
+    const auto distance = [&](const RemeshOptions& options) {
+      const Mesh mesh = remesh(input, options).mesh;
+      EXPECT_NEAR(static_cast<double>(mesh.faces.size()), 1500, 15);
+      EXPECT_EQ(mesh_statistics(mesh).inverted_quads, 0u);
+      const double diagonal = bounding_diagonal(input);
+      return surface_distance(mesh, input, diagonal).mean +
+             surface_distance(input, mesh, diagonal).mean;
+    };
+    const double uniform = distance(adaptive(0, 1500));
+    EXPECT_LT(distance(adaptive(1, 1500)), 0.75 * uniform);
+    EXPECT_LT(distance(adaptive(0.5, 1500)), 0.95 * uniform);
+  }
+}
+
+TEST(Adaptive, LeavesASphereEven) {
+  const Mesh mesh = remesh(sample_shape("sphere"), adaptive(1, 1500)).mesh;
+  EXPECT_LT(mesh_statistics(mesh).area_sigma, 0.2);
+  // Its faces are as far outside of it as inside.
+  const auto volume_of = [](const Mesh& m) {
+    double volume = 0;
+    for (std::size_t f = 0; f < m.faces.size(); ++f) {
+      const auto face = m.faces[f];
+      for (std::size_t k = 2; k < face.size(); ++k) {
+        volume +=
+            m.positions[face[0]].dot(m.positions[face[k - 1]].cross(m.positions[face[k]])) / 6;
+      }
+    }
+    return volume;
+  };
+  const double ball = volume_of(sample_shape("sphere"));
+  const double inside = volume_of(remesh(sample_shape("sphere"), adaptive(0, 1500)).mesh);
+  const double fitted = volume_of(remesh(sample_shape("sphere"), adaptive(1, 1500)).mesh);
+  EXPECT_LT(std::abs(fitted - ball), 0.15 * std::abs(inside - ball));
+}
+
+TEST(Adaptive, RefusesWhatMakesNoSense) {
+  RemeshOptions options = adaptive(1.5, 100);
+  EXPECT_THROW(remesh(sample_shape("sphere", 0.5), options), Error);
+  options = adaptive(0.5, 100);
+  options.sizing.grading = 1;
+  EXPECT_THROW(remesh(sample_shape("sphere", 0.5), options), Error);
+}
+
+}  // namespace
+}  // namespace meshgrain
