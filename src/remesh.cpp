@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "denoise/denoise.h"
@@ -67,7 +68,8 @@ std::vector<std::array<Index, 2>> border_of_faces(const Mesh& surface, const Gra
   return result;
 }
 
-/// One call of remesh(): each stage leaves what the next ones need.
+/// One call of remesh(): each stage leaves what the next ones need. What prepare() has done can
+/// serve several meshes.
 class Pipeline {
  public:
   Pipeline(const Mesh& input, const RemeshOptions& options, const Context& context)
@@ -80,6 +82,58 @@ class Pipeline {
     result_.report.input_faces = input.faces.size();
   }
 
+  /// All that does not depend on the number of faces, but as fine as the target needs it.
+  void prepare(Mesh input) {
+    clean_up(std::move(input));
+    sharpen();
+    refine();
+    build_levels();
+    find_lines();
+    size_faces();
+    refine_for_sizes();
+    orient();
+  }
+
+  void make_mesh() {
+    position_and_extract();
+    count_singularities();
+    smooth_faces();
+  }
+
+  /// Another target, not finer than the one that all was prepared for.
+  void aim_at(const RemeshOptions& options) {
+    target_ = Target(options, result_.report.input_vertices, frame_.scale);
+    find_lines();
+    size_faces();
+  }
+
+  /// The mesh alone; the rest stays for the next one.
+  RemeshResult take_mesh(const RemeshReport& prepared) {
+    RemeshResult level;
+    level.mesh = std::move(extraction_.mesh);
+    leave(frame_, level.mesh);
+    level.report = std::exchange(result_.report, prepared);
+    extraction_ = {};
+    is_split_ = false;
+    return level;
+  }
+
+  const RemeshReport& report() const { return result_.report; }
+
+  RemeshResult result() && {
+    if (!nodes_are_vertices_) {  // the nodes are a cloud of their own
+      surface_ = Mesh();
+      surface_.positions = graph().positions;
+    }
+    fields().surface = std::move(surface_);
+    fields().surface.normals = graph().normals;
+    leave(frame_, fields());
+    result_.mesh = std::move(extraction_.mesh);
+    leave(frame_, result_.mesh);
+    return std::move(result_);
+  }
+
+ private:
   /// A clean surface of triangles (or points), about one unit large.
   void clean_up(Mesh input) {
     stage_("clean", [&] {
@@ -112,7 +166,8 @@ class Pipeline {
       stage_("subdivide", [&] {
         const double area = surface_area(surface_);
         if (!(area > 0)) throw Error("the input has no surface: all of its faces are degenerate");
-        // Where faces vary in size, and nothing can be split later on, fine enough for the smallest.
+        // Where faces vary in size, and nothing can be split later on, fine enough for the
+        // smallest.
         const bool once = !nodes_are_vertices_ || !options_.guides.empty();
         const bool varied = once && !options_.sizing.is_uniform();
         const double length = target_.edge_length(area) / (varied ? options_.sizing.ratio : 1);
@@ -171,16 +226,16 @@ class Pipeline {
     // Guides are cut into the surface by now.
     const bool may_split = !is_cloud_ && nodes_are_vertices_ && options_.guides.empty();
     if (!may_split || lengths_.uniform()) return;
-    surface_.values = std::move(lengths_.values);
-    const bool finer =
-        stage_("subdivide", [&] { return subdivide_by_values(surface_, 0.5, context_); });
-    if (finer) {
-      stage_("order", [&] { sort_along_curve(surface_, context_); });
-      build_levels();
-      find_lines();
-    }
-    lengths_ = EdgeLength(std::exchange(surface_.values, {}));
-    if (finer) lengths_ = graded(graph(), lengths_, growth(), context_);
+    std::vector<float> longest = scaled(lengths_, 0.5).values;
+    if (!stage_("subdivide", [&] { return subdivide(surface_, longest, context_); })) return;
+    stage_("order", [&] {
+      const std::vector<Index> order = sort_along_curve(surface_, context_);
+      lengths_.values.resize(order.size());
+      for (std::size_t i = 0; i < order.size(); ++i) lengths_.values[i] = 2 * longest[order[i]];
+    });
+    build_levels();
+    find_lines();
+    lengths_ = graded(graph(), lengths_, growth(), context_);
   }
 
   void orient() {
@@ -297,20 +352,6 @@ class Pipeline {
     });
   }
 
-  RemeshResult result() && {
-    if (!nodes_are_vertices_) {  // the nodes are a cloud of their own
-      surface_ = Mesh();
-      surface_.positions = graph().positions;
-    }
-    fields().surface = std::move(surface_);
-    fields().surface.normals = graph().normals;
-    leave(frame_, fields());
-    result_.mesh = std::move(extraction_.mesh);
-    leave(frame_, result_.mesh);
-    return std::move(result_);
-  }
-
- private:
   void drop_pieces() {
     if (is_cloud_ || options_.min_component == 0) return;
     const double area = options_.min_component * target_.face_area(surface_area(surface_));
@@ -373,7 +414,9 @@ class Pipeline {
     const double least = options_.faces == OutputFaces::quads           ? 2.5
                          : options_.faces == OutputFaces::quad_dominant ? 5.4
                                                                         : 6;
-    return least * (1 + 2 * options_.regularity / (1 - options_.regularity));
+    // Sizes that vary need the dislocations where rows end.
+    const double regularity = options_.regularity / (lengths_.uniform() ? 1 : 2);
+    return least * (1 + 2 * regularity / (1 - regularity));
   }
 
   Extraction extract(const PositionField& positions) {
@@ -424,18 +467,41 @@ RemeshResult remesh(Mesh input, const RemeshOptions& options, const Context& con
   check(options);
   if (options.symmetry.any()) return remesh_symmetric(std::move(input), options, context);
   Pipeline pipeline(input, options, context);
-  pipeline.clean_up(std::move(input));
-  pipeline.sharpen();
-  pipeline.refine();
-  pipeline.build_levels();
-  pipeline.find_lines();
-  pipeline.size_faces();
-  pipeline.refine_for_sizes();
-  pipeline.orient();
-  pipeline.position_and_extract();
-  pipeline.count_singularities();
-  pipeline.smooth_faces();
+  pipeline.prepare(std::move(input));
+  pipeline.make_mesh();
   return std::move(pipeline).result();
+}
+
+std::vector<RemeshResult> remesh_levels(Mesh input, std::span<const std::size_t> face_counts,
+                                        RemeshOptions options, const Context& context) {
+  if (face_counts.empty() || *std::min_element(face_counts.begin(), face_counts.end()) == 0) {
+    throw Error("levels need numbers of faces, all of them positive");
+  }
+  if (options.symmetry.any()) throw Error("several levels cannot be made symmetric");
+  if (options.fields != nullptr && !options.fields->position.points.empty()) {
+    throw Error("given positions decide how fine a mesh is, and make but one");
+  }
+  options.edge_length = 0;
+  options.face_count = *std::max_element(face_counts.begin(), face_counts.end());
+  check(options);
+  Pipeline pipeline(input, options, context);
+  pipeline.prepare(std::move(input));
+  const RemeshReport prepared = pipeline.report();
+  std::vector<std::size_t> order(face_counts.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return face_counts[a] > face_counts[b]; });
+  std::vector<RemeshResult> levels(face_counts.size());
+  for (const std::size_t k : order) {
+    if (k != order.front()) {
+      RemeshOptions level = options;
+      level.face_count = face_counts[k];
+      pipeline.aim_at(level);
+    }
+    pipeline.make_mesh();
+    levels[k] = pipeline.take_mesh(prepared);
+  }
+  return levels;
 }
 
 }  // namespace meshgrain

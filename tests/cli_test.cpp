@@ -299,6 +299,8 @@ TEST_F(Cli, Guides) {
 TEST_F(Cli, Sizing) {
   sample("bracket", "in.obj", 0.5);
   const double uniform = statistics("-f 400 -D").area_sigma;
+  EXPECT_GT(statistics("-f 400 -D --adaptive 1").area_sigma, 1.3 * uniform);
+  EXPECT_EQ(bytes("-f 400 --adaptive 1"), bytes("-f 400 --sizing curvature"));
   EXPECT_GT(statistics("-f 400 -D --sizing curvature").area_sigma, 1.3 * uniform);
   EXPECT_GT(statistics("-f 400 -D --sizing distance:0,0,0").area_sigma, 1.3 * uniform);
   EXPECT_GT(statistics("-f 400 -D --sizing distance:1,-1,.5 --sizing-ratio 8").area_sigma,
@@ -322,7 +324,15 @@ TEST_F(Cli, Sizing) {
   run_well("in.ply -o b.obj -f 300 -D --sizing value:size");
   EXPECT_GT(mesh_statistics(read_mesh(folder_ / "b.obj")).area_sigma,
             1.5 * mesh_statistics(read_mesh(folder_ / "a.obj")).area_sigma);
+  run_well("in.ply -o b.obj -f 300 -D --density size");
+  EXPECT_GT(mesh_statistics(read_mesh(folder_ / "b.obj")).area_sigma,
+            1.3 * mesh_statistics(read_mesh(folder_ / "a.obj")).area_sigma);
   expect_refused("in.ply -o c.obj --sizing value:other", 1, "other");
+  expect_refused("in.ply -o c.obj --density other", 1, "other");
+  expect_refused("in.ply -o c.obj --density colors", 1, "red");
+  expect_refused("in.ply -o c.obj --density size --sizing value:size", 2, "--density");
+  expect_refused("in.ply -o c.obj --adaptive 1.1", 2, "--adaptive");
+  expect_refused("in.ply -o c.obj --grading 1", 2, "--grading");
   for (const char* wrong :
        {"big", "distance", "distance:1,2", "distance:1,2,x", "value:", "value", "curvature:3"}) {
     expect_refused(std::string("in.ply -o c.obj --sizing ") + wrong, 2, "--sizing");
@@ -394,6 +404,28 @@ TEST_F(Cli, ReportTellsAll) {
                            "extraction", "smoothing", "write"}) {
     EXPECT_EQ(std::count(names.begin(), names.end(), name) > 0, true) << name;
   }
+}
+
+TEST_F(Cli, SeveralSizesInOneRun) {
+  sample("torus", "in.obj");
+  run_well("in.obj -o out.v1.ply --lod 1200,400 --report report.json");
+  const json report = json::parse(read("report.json"));
+  ASSERT_EQ(report["levels"].size(), 2u);
+  const std::size_t counts[] = {1200, 400};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const std::string name = fmt::format("out.v1_lod{}.ply", k);
+    const std::size_t faces = read_mesh(folder_ / name).faces.size();
+    EXPECT_NEAR(static_cast<double>(faces) / static_cast<double>(counts[k]), 1, 0.0101);
+    EXPECT_EQ(report["levels"][k]["output"]["file"], name);
+    EXPECT_EQ(report["levels"][k]["output"]["faces"], faces);
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out.v1.ply"));
+  expect_refused("in.obj -o out.obj --lod 500,x", 2, "--lod");
+  expect_refused("in.obj -o out.obj --lod 500,0", 2, "--lod");
+  expect_refused("in.obj -o out.obj --lod 500 -f 100", 2, "--lod");
+  expect_refused("in.obj -o out.obj --lod 500 --fields-out f.ply", 2, "--lod");
+  expect_refused("in.obj -o out.obj --lod 500,50 --symmetry x", 1, "symmetric");
+  expect_refused("in.obj -o none/out.obj --lod 500,50", 1, "none");
 }
 
 TEST_F(Cli, ReportDoesNotChangeTheResult) {

@@ -822,6 +822,47 @@ TEST_F(Io, WhatCannotBeReadIsNamed) {
             "a.obj: only PLY files have named numbers, such as \"size\"");
 }
 
+TEST_F(Io, PaintIsRedLessTheMeanOfGreenAndBlue) {
+  const std::vector<float> expected{1, -1, 0, 0, 0, 0.5f};  // red, cyan, white, grey, black, pink
+  const ReadOptions paint{.value_name = {}, .paint = true};
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float "
+      "z\n";
+  const auto colors = [](const std::string& type) {
+    std::string text;
+    for (const char* name : {"red", "green", "blue"}) {
+      text += "property " + type + " " + name + "\n";
+    }
+    return text + "end_header\n";
+  };
+  EXPECT_EQ(read("a.ply",
+                 header + colors("float") +
+                     "0 0 0 1 0 0\n1 0 0 0 1 1\n2 0 0 1 1 1\n3 0 0 .5 .5 .5\n4 0 0 0 0 0\n"
+                     "5 0 0 1 .5 .5\n",
+                 paint)
+                .values,
+            expected);
+  EXPECT_EQ(read("b.ply",
+                 header + colors("uchar") +
+                     "0 0 0 255 0 0\n1 0 0 0 255 255\n2 0 0 255 255 255\n3 0 0 9 9 9\n4 0 0 0 0 0\n"
+                     "5 0 0 255 0 255\n",
+                 paint)
+                .values,
+            expected);
+  const std::string obj =
+      "v 0 0 0 1 0 0\nv 1 0 0 0 1 1\nv 2 0 0 1 1 1\nv 3 0 0 .5 .5 .5\nv 4 0 0 0 0 0\n"
+      "v 5 0 0 1 .5 .5\n";
+  EXPECT_EQ(read("c.obj", obj, paint).values, expected);
+  EXPECT_TRUE(read("d.obj", obj).values.empty());
+
+  EXPECT_EQ(error_of("e.obj", "v 0 0 0 1 1 1\nv 0 1 0\n", paint),
+            "e.obj: line 2: expected the vertex's red, from 0 to 1, found the end of the line");
+  EXPECT_EQ(error_of("f.ply", header + "end_header\n", paint),
+            "f.ply: line 3: element vertex has no number \"red\"");
+  EXPECT_EQ(error_of("g.off", "OFF\n1 0 0\n0 0 0\n", paint),
+            "g.off: only PLY and OBJ files have colours at their vertices");
+}
+
 TEST_F(Io, WeldOnRequest) {
   const std::string text =
       "v 0 0 0\nv 1 0 0\nv 0 1 0\nv -0 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 4 6 5\n";

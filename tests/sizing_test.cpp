@@ -4,8 +4,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
+#include <tuple>
 
 #include "field/bending.h"
 #include "made_graph.h"
@@ -146,25 +148,36 @@ RemeshOptions adaptive(double adaptive, std::size_t faces, OutputFaces kind = Ou
   return options;
 }
 
+/// How strongly an ellipsoid of half axes 3, 1 and 1 bends where x is this.
+double ellipsoid_bend(double x) {
+  const double cosine2 = x * x / 9, d = 9 * (1 - cosine2) + cosine2;
+  return std::hypot(3 / (d * std::sqrt(d)), 3 / std::sqrt(d));
+}
+
 TEST(Adaptive, FacesAreAsLargeAsTheCurvatureSays) {
-  // An ellipsoid of half axes 3, 1 and 1: curvatures 3 and 3 at its ends, 1 and 1/9 in between.
+  EXPECT_NEAR(ellipsoid_bend(3), std::hypot(3.0, 3.0), 1e-6);
+  EXPECT_NEAR(ellipsoid_bend(0), std::hypot(1.0, 1.0 / 9), 1e-6);
   Mesh ellipsoid = sample_shape("sphere");
   for (Vec3& p : ellipsoid.positions) p.x() *= 3;
-  const double expected = std::pow(3 * std::sqrt(2.0) / std::hypot(1.0, 1.0 / 9), 2.0 / 3);
   for (const OutputFaces kind : kinds) {
     SCOPED_TRACE(static_cast<int>(kind));
     const Mesh mesh = remesh(ellipsoid, adaptive(1, 3000, kind)).mesh;
     EXPECT_NEAR(static_cast<double>(mesh.faces.size()), 3000, 30);
-    double area[2] = {0, 0}, count[2] = {0, 0};
+    // Faces are to be as large as 1 / bend^(2/3): at the ends and in the middle, measured so, they
+    // are the same. Measured in units of area they are not.
+    std::array<double, 2> area{}, measured{}, count{};
     for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-      const float x = std::abs(mesh.positions[mesh.faces[f][0]].x());
-      if (x > 0.6f && x < 2.9f) continue;
-      const bool at_end = x >= 2.9f;
-      area[at_end] += face_area(mesh, f);
-      count[at_end] += 1;
+      double x = 0;
+      for (const Index v : mesh.faces[f]) x += std::abs(mesh.positions[v].x());
+      x = std::min(3.0, x / static_cast<double>(mesh.faces[f].size()));
+      if (x > 0.8 && x < 2.8) continue;
+      area[x > 1] += face_area(mesh, f);
+      measured[x > 1] += face_area(mesh, f) * std::pow(ellipsoid_bend(x), 2.0 / 3);
+      count[x > 1] += 1;
     }
-    ASSERT_GT(count[1], 20);
-    EXPECT_NEAR((area[0] / count[0]) / (area[1] / count[1]) / expected, 1, 0.25);
+    ASSERT_GT(count[1], 100);
+    EXPECT_NEAR((measured[0] / count[0]) / (measured[1] / count[1]), 1, 0.15);
+    EXPECT_GT((area[0] / count[0]) / (area[1] / count[1]), 1.5);
   }
 }
 
@@ -213,6 +226,69 @@ TEST(Adaptive, RefusesWhatMakesNoSense) {
   options = adaptive(0.5, 100);
   options.sizing.grading = 1;
   EXPECT_THROW(remesh(sample_shape("sphere", 0.5), options), Error);
+}
+
+/// Mean face areas where x is negative and where it is positive, by `distance` at least.
+std::array<double, 2> mean_areas(const Mesh& mesh, double distance) {
+  std::array<double, 2> area{}, count{};
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    float x = 0;
+    for (const Index v : mesh.faces[f]) x += mesh.positions[v].x();
+    x /= static_cast<float>(mesh.faces[f].size());
+    if (std::abs(x) < distance) continue;
+    area[x > 0] += face_area(mesh, f);
+    count[x > 0] += 1;
+  }
+  return {area[0] / count[0], area[1] / count[1]};
+}
+
+class PaintedHalves
+    : public testing::TestWithParam<std::tuple<const char*, OutputFaces, std::size_t>> {};
+
+TEST_P(PaintedHalves, FourTimesTheDensityIsAQuarterOfTheArea) {
+  const auto& [name, kind, count] = GetParam();
+  Mesh mesh = sample_shape(name);
+  for (Vec3& p : mesh.positions) p *= std::string(name) == "plate" ? 2.0f : 1.0f;
+  for (const Vec3& p : mesh.positions) mesh.values.push_back(p.x() < 0 ? 12.0f : 3.0f);
+  RemeshOptions options;
+  options.faces = kind;
+  options.face_count = count;
+  options.sizing.kind = Sizing::Kind::density;
+  // A thousand faces have hardly room for a slow change, and come in few rows.
+  const bool few = count < 2000;
+  if (few) options.sizing.grading = 4;
+  const double coarse_side = std::sqrt(surface_area(mesh) / 2 / (static_cast<double>(count) / 5));
+  const double transition = (few ? 2 : 4) * coarse_side;
+  const Mesh by_number = remesh(mesh, options).mesh;
+  EXPECT_NEAR(static_cast<double>(by_number.faces.size()) / static_cast<double>(count), 1, 0.0101);
+  const auto [dense, coarse] = mean_areas(by_number, transition);
+  EXPECT_NEAR(coarse / dense, 4, 0.4);
+  if (!few) return;
+
+  // Red and white are the same as four and one.
+  for (float& value : mesh.values) value = value == 12 ? 1.0f : 0.0f;
+  options.sizing.kind = Sizing::Kind::paint;
+  const auto [red, white] = mean_areas(remesh(mesh, options).mesh, transition);
+  EXPECT_NEAR(white / red, 4, 0.4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, PaintedHalves,
+                         testing::Combine(testing::Values("plate", "sphere"),
+                                          testing::ValuesIn(kinds),
+                                          testing::Values(std::size_t{1000}, std::size_t{5000})));
+
+TEST(Painted, NumbersMustBePositiveAndPaintInBounds) {
+  Mesh mesh = sample_shape("plate", 0.5);
+  RemeshOptions options;
+  options.face_count = 100;
+  options.sizing.kind = Sizing::Kind::density;
+  EXPECT_THROW(remesh(mesh, options), Error);
+  mesh.values.assign(mesh.positions.size(), 0);
+  EXPECT_THROW(remesh(mesh, options), Error);
+  options.sizing.kind = Sizing::Kind::paint;
+  EXPECT_NO_THROW(remesh(mesh, options));
+  mesh.values[3] = 1.5;
+  EXPECT_THROW(remesh(mesh, options), Error);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -11,6 +10,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "arguments.h"
 #include "meshgrain/error.h"
@@ -34,7 +34,8 @@ struct Arguments {
   bool posy_given = false, dominant = false, hexagons = false, single_level = false;
   bool ignored = false;
   bool target_given = false;
-  std::string energy, orientation_energy, sizing = "uniform";
+  std::vector<std::size_t> levels;  // of --lod
+  std::string energy, orientation_energy, sizing = "uniform", density;
   std::vector<std::string> guides;
   ReadOptions read;
   RemeshOptions remesh;
@@ -108,6 +109,25 @@ void parse_symmetry(const std::string& text, Symmetry& symmetry) {
   }
 }
 
+/// "50000,5000,500" as numbers of faces.
+void parse_levels(const std::string& text, std::vector<std::size_t>& levels) {
+  for (const std::string& word : CLI::detail::split(text, ',')) {
+    std::size_t count = 0;
+    if (!CLI::detail::lexical_cast(word, count) || count == 0) {
+      throw CLI::ValidationError("--lod", "\"" + word + "\" is no number of faces");
+    }
+    levels.push_back(count);
+  }
+}
+
+/// Level k of out.obj is out_lod<k>.obj.
+std::string level_path(const std::string& output, std::size_t level) {
+  std::filesystem::path path(output);
+  const std::string extension = path.extension().string();
+  path.replace_filename(path.stem().string() + fmt::format("_lod{}", level) + extension);
+  return path.string();
+}
+
 constexpr const char* description =
     "Meshgrain turns a mesh or point cloud into a mesh of well-shaped quads, triangles or "
     "hexagons\n"
@@ -148,8 +168,15 @@ void add_options(CLI::App& app, Arguments& a) {
       ->check(CLI::PositiveNumber)
       ->type_name("LENGTH")
       ->group(app.get_option("-f")->get_group());
-  app.get_option("-f")->excludes("-v")->excludes("-s");
-  app.get_option("-v")->excludes("-s");
+  app.add_option_function<std::string>(
+         "--lod", [&a](const std::string& text) { parse_levels(text, a.levels); },
+         "several sizes in one run, numbers of faces; -o out.obj writes out_lod0.obj, out_lod1.obj "
+         "and so on")
+      ->type_name("N,N,...")
+      ->group(app.get_option("-f")->get_group());
+  app.get_option("-f")->excludes("-v")->excludes("-s")->excludes("--lod");
+  app.get_option("-v")->excludes("-s")->excludes("--lod");
+  app.get_option("-s")->excludes("--lod");
 
   const auto sizes = [&](CLI::Option* option) { option->group("Faces of different sizes"); };
   sizes(app.add_option("--adaptive", o.sizing.adaptive,
@@ -157,11 +184,19 @@ void add_options(CLI::App& app, Arguments& a) {
             ->check(refuse_unless_finite)
             ->check(CLI::Range(0.0, 1.0))
             ->type_name("X"));
-  sizes(app.add_option("--sizing", a.sizing,
-                       "where faces are small: uniform, curvature (--adaptive 1), distance:X,Y,Z "
-                       "(near a point) or value:NAME (by a number of the input's PLY vertices)")
+  sizes(
+      app.add_option("--density", a.density,
+                     "painted: by the vertices' colors (red: four times as many faces as white "
+                     "or grey, cyan: a quarter; PLY or OBJ), or by the number of this name (faces "
+                     "per area; PLY)")
+          ->type_name("colors|NAME"));
+  sizes(app.add_option(
+               "--sizing", a.sizing,
+               "where faces are small: uniform, curvature (--adaptive 1), distance:X,Y,Z "
+               "(near a point) or value:NAME (edge lengths by a number of the PLY's vertices)")
             ->type_name("HOW"));
-  sizes(app.add_option("--sizing-ratio", o.sizing.ratio, "largest to smallest edge length (4)")
+  sizes(app.add_option("--sizing-ratio", o.sizing.ratio,
+                       "largest to smallest edge length (4); of paint: cyan to red")
             ->check(refuse_unless_finite)
             ->check(CLI::Range(1.0, 1000.0))
             ->type_name("R"));
@@ -321,6 +356,21 @@ void parse_sizing(Arguments& a) {
     throw UsageError("--sizing \"" + a.sizing +
                      "\" is none of uniform, curvature, distance:X,Y,Z, value:NAME");
   }
+  if (a.density.empty()) return;
+  if (sizing.kind != Sizing::Kind::uniform) {
+    throw UsageError("--density and --sizing " + kind + " exclude each other");
+  }
+  a.read.paint = a.density == "colors";
+  if (!a.read.paint) a.read.value_name = a.density;
+  sizing.kind = a.read.paint ? Sizing::Kind::paint : Sizing::Kind::density;
+}
+
+/// The meshes that are written.
+std::vector<std::string> output_paths(const Arguments& a) {
+  if (a.levels.empty()) return {a.output};
+  std::vector<std::string> paths;
+  for (std::size_t k = 0; k < a.levels.size(); ++k) paths.push_back(level_path(a.output, k));
+  return paths;
 }
 
 /// "FILE" or "FILE:STRENGTH".
@@ -370,8 +420,13 @@ void resolve(Arguments& a) {
   o.solver.multiresolution = !a.single_level;
   o.solver.record_energy = !a.report.empty();
 
+  if (!a.levels.empty() && !a.fields_out.empty()) {
+    throw UsageError("--fields-out goes with one size, and --lod with several");
+  }
+
   // Two results in one file would leave one.
-  const std::array<std::string, 3> outputs{a.output, a.fields_out, a.report};
+  std::vector<std::string> outputs = output_paths(a);
+  outputs.insert(outputs.end(), {a.fields_out, a.report});
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       if (!outputs[i].empty() && std::filesystem::path(outputs[i]).lexically_normal() ==
@@ -432,29 +487,60 @@ Json stage(const char* name, double seconds) {
   return {{"name", name}, {"seconds", seconds}};
 }
 
-void write_report(const Arguments& a, const RemeshReport& report, const MeshStatistics& statistics,
-                  int threads, double read_seconds, double write_seconds, double seconds) {
+/// What is written, and what there is to say of it.
+struct Written {
+  std::string path;
+  RemeshReport report;
+  MeshStatistics statistics;
+};
+
+Json output(const Written& written) {
+  Json json = {{"file", written.path}};
+  json.update(to_json(written.statistics));
+  return json;
+}
+
+/// Of one mesh all is told at the top; of several, each is in a list of its own.
+void write_report(const Arguments& a, const std::vector<Written>& meshes, int threads,
+                  double read_seconds, double write_seconds, double seconds) {
+  const RemeshReport& first = meshes.front().report;
   Json json = {
       {"version", version()},
       {"input",
-       {{"file", a.input}, {"vertices", report.input_vertices}, {"faces", report.input_faces}}},
+       {{"file", a.input}, {"vertices", first.input_vertices}, {"faces", first.input_faces}}},
       {"options", to_json(a.remesh)},
       {"threads", threads},
       {"seconds", seconds}};
-  json.update(to_json(report));
-  Json& stages = json["stages"];
-  stages.insert(stages.begin(), stage("read", read_seconds));
+  Json stages = Json::array({stage("read", read_seconds)});
+  if (a.levels.empty()) {
+    json.update(to_json(first));
+    stages.insert(stages.end(), json["stages"].begin(), json["stages"].end());
+    json["output"] = output(meshes.front());
+  } else {
+    for (const Written& mesh : meshes) {
+      Json level = to_json(mesh.report);
+      level["output"] = output(mesh);
+      json["levels"].push_back(level);
+    }
+  }
   stages.push_back(stage("write", write_seconds));
+  json["stages"] = stages;
   json["peak_memory_bytes"] = peak_memory();
-  json["output"] = {{"file", a.output}};
-  json["output"].update(to_json(statistics));
   // Names need not be UTF-8, which JSON must be.
   write_file(a.report, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
+std::vector<RemeshResult> make_meshes(const Arguments& a, Mesh input, const Context& context) {
+  if (!a.levels.empty()) return remesh_levels(std::move(input), a.levels, a.remesh, context);
+  std::vector<RemeshResult> results;
+  results.push_back(remesh(std::move(input), a.remesh, context));
+  return results;
+}
+
 void run(Arguments& a, Context& context) {
   const auto start = std::chrono::steady_clock::now();
-  check_writable(a.output);
+  const std::vector<std::string> paths = output_paths(a);
+  for (const std::string& path : paths) check_writable(path);
   for (const std::string& path : {a.fields_out, a.report}) {
     if (!path.empty()) check_place(path);
   }
@@ -474,33 +560,36 @@ void run(Arguments& a, Context& context) {
     a.remesh.guides.insert(a.remesh.guides.end(), guides.begin(), guides.end());
   }
   const double read_seconds = seconds_since(start);
-  RemeshResult result = remesh(std::move(input), a.remesh, context);
+  std::vector<RemeshResult> results = make_meshes(a, std::move(input), context);
   if (a.target_given && !fields.position.points.empty()) {
-    result.report.notes.push_back(
+    results.front().report.notes.push_back(
         "the given positions decide how fine the mesh is, not -f, -v or -s");
   }
 
   context.progress("write", 0);
   const auto write_start = std::chrono::steady_clock::now();
-  if (!a.fields_out.empty()) write_fields(a.fields_out, result.fields);
-  write_mesh(a.output, result.mesh);
+  if (!a.fields_out.empty()) write_fields(a.fields_out, results.front().fields);
+  for (std::size_t k = 0; k < results.size(); ++k) write_mesh(paths[k], results[k].mesh);
   const double write_seconds = seconds_since(write_start);
   const double seconds = seconds_since(start);
   const bool summary = !a.quiet && stderr_is_terminal();
-  MeshStatistics statistics;
-  if (summary || !a.report.empty()) statistics = mesh_statistics(result.mesh);
+  std::vector<Written> written;
+  for (std::size_t k = 0; k < results.size(); ++k) {
+    written.push_back({paths[k], std::move(results[k].report), {}});
+    if (summary || !a.report.empty()) written[k].statistics = mesh_statistics(results[k].mesh);
+  }
   if (!a.report.empty()) {
-    write_report(a, result.report, statistics, context.threads(), read_seconds, write_seconds,
-                 seconds);
+    write_report(a, written, context.threads(), read_seconds, write_seconds, seconds);
   }
   bar.clear();
   if (!a.quiet) {
-    for (const std::string& note : result.report.notes) {
+    for (const std::string& note : written.front().report.notes) {
       fmt::print(stderr, "meshgrain: note: {}\n", note);
     }
   }
-  if (summary) {
-    fmt::print(stderr, "{}: {} ({:.2f} s)\n", file_name(a.output), describe(statistics), seconds);
+  for (std::size_t k = 0; summary && k < written.size(); ++k) {
+    fmt::print(stderr, "{}: {} ({:.2f} s)\n", file_name(written[k].path),
+               describe(written[k].statistics), seconds);
   }
 }
 

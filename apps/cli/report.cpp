@@ -85,7 +85,7 @@ Json to_json(const RemeshReport& report) {
 }
 
 Json to_json(const RemeshOptions& o) {
-  constexpr const char* sizings[] = {"uniform", "distance", "value"};
+  constexpr const char* sizings[] = {"uniform", "distance", "value", "density", "paint"};
   constexpr const char* schedules[] = {"blocks", "random", "jacobi"};
   constexpr const char* energies[] = {"extrinsic", "intrinsic", "convex"};
   const bool triangular = o.faces == OutputFaces::triangles || o.faces == OutputFaces::hexagons;

@@ -17,6 +17,10 @@ struct ReadOptions {
   bool weld = false;
   /// Keep the scalar vertex property of this name (PLY) as Mesh::values; an error if it is absent.
   std::string value_name;
+  /// Keep the colours of the vertices (PLY: `red`, `green`, `blue`; OBJ: three numbers after the
+  /// position) as Mesh::values, for Sizing::Kind::paint: red - (green + blue) / 2, from -1 (cyan)
+  /// over 0 (white and all greys) to 1 (red). An error if they are absent. Not with `value_name`.
+  bool paint = false;
 };
 
 /// Reads OBJ, PLY (ASCII and both byte orders; `tristrips` and `range_grid` too), OFF (text and

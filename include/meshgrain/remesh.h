@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -85,5 +86,15 @@ struct RemeshResult {
 /// contradict each other.
 RemeshResult remesh(Mesh input, const RemeshOptions& options = {},
                     const Context& context = Context());
+
+/// Several sizes of one mesh, a result for each of `face_counts` (at least one, all positive; the
+/// numbers in `options` are not used), in their order. Cleaning, graph, hierarchy and orientation
+/// field are made once, fine enough for the largest, so that the meshes follow the same directions.
+/// A piece is left out of all (RemeshOptions::min_component) if it is small for the largest.
+/// RemeshResult::fields are left empty. Throws Error as remesh() does, and for a symmetry or a
+/// given position field.
+std::vector<RemeshResult> remesh_levels(Mesh input, std::span<const std::size_t> face_counts,
+                                        RemeshOptions options = {},
+                                        const Context& context = Context());
 
 }  // namespace meshgrain

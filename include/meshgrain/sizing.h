@@ -11,12 +11,17 @@ struct Sizing {
     uniform,
     distance,  ///< From 1 / `ratio` at `point` to 1 at the far end of the surface.
     values,    ///< Proportional to the mesh's value at each vertex (Mesh::values, positive).
+    density,   ///< So that faces per area are proportional to those values.
+    /// By paint (ReadOptions::paint): from 1 / sqrt(`ratio`) where the value is 1 to sqrt(`ratio`)
+    /// where it is -1. With a ratio of 4, red has four times as many faces as white, and cyan a
+    /// quarter.
+    paint,
   };
   Kind kind = Kind::uniform;
   /// From 0 to 1: how much smaller faces are where the surface bends. At 1 they are as the least
   /// mean distance to the surface wants them. Multiplies what `kind` says.
   double adaptive = 0;
-  /// The longest edge length to the shortest, by distance, and at most by bending.
+  /// The longest edge length to the shortest, by distance or paint, and at most by bending.
   float ratio = 4;
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< In input coordinates.
   /// Lengths grow at most by this factor over three faces.

@@ -20,9 +20,10 @@ EdgeLengths edge_lengths(const Mesh& mesh);
 /// denser than the output). Values and normals are interpolated. Non-manifold edges are ordinary.
 void subdivide(Mesh& triangles, double max_length, const Context& context = Context());
 
-/// The same for edges longer than `factor` times the smaller value at their ends (Mesh::values, all
-/// positive). Returns whether there were any.
-bool subdivide_by_values(Mesh& triangles, double factor, const Context& context = Context());
+/// The same where edges may be as long as the smaller of the numbers at their ends: positive, one a
+/// vertex, and interpolated too. Returns whether any edge was longer.
+bool subdivide(Mesh& triangles, std::vector<float>& max_lengths,
+               const Context& context = Context());
 
 /// Puts vertices into the order of a Hilbert curve, and faces into the order of their first vertex,
 /// so that what is near on the surface is near in memory. Returns, for each new vertex, its index

@@ -56,16 +56,19 @@ std::vector<float> lengths_by_bending(const Hierarchy& hierarchy, const Mesh& su
   return lengths;
 }
 
-void multiply_by_values(std::vector<float>& lengths, const std::vector<float>& values) {
-  if (values.size() != lengths.size()) {
-    throw Error("edge lengths by value need one value a vertex");
-  }
+void multiply_by_values(std::vector<float>& lengths, const std::vector<float>& values,
+                        const Sizing& sizing) {
+  if (values.size() != lengths.size()) throw Error("sizes by value need one value a vertex");
+  const bool painted = sizing.kind == Sizing::Kind::paint;
+  const double exponent = sizing.kind == Sizing::Kind::density ? -0.5 : 1;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!(values[i] > 0) || !std::isfinite(values[i])) {
-      throw Error("edge lengths by value need positive numbers: vertex " + std::to_string(i) +
-                  " has " + std::to_string(values[i]));
+    if (painted ? !(std::abs(values[i]) <= 1) : !(values[i] > 0 && std::isfinite(values[i]))) {
+      throw Error(painted ? "paint must lie between -1 and 1"
+                          : "sizes by value need positive numbers, and one is " +
+                                std::to_string(values[i]));
     }
-    lengths[i] *= values[i];
+    lengths[i] *= static_cast<float>(painted ? std::pow(sizing.ratio, -0.5 * values[i])
+                                             : std::pow(values[i], exponent));
   }
 }
 
@@ -95,8 +98,11 @@ EdgeLength relative_edge_lengths(const Hierarchy& hierarchy, const Mesh& surface
   if (sizing.adaptive > 0) {
     lengths = lengths_by_bending(hierarchy, surface, creases, sizing, face_side, context);
   }
-  if (sizing.kind == Sizing::Kind::values) multiply_by_values(lengths, surface.values);
-  if (sizing.kind == Sizing::Kind::distance) multiply_by_distance(lengths, graph, sizing);
+  if (sizing.kind == Sizing::Kind::distance) {
+    multiply_by_distance(lengths, graph, sizing);
+  } else if (sizing.kind != Sizing::Kind::uniform) {
+    multiply_by_values(lengths, surface.values, sizing);
+  }
   return EdgeLength(std::move(lengths));
 }
 

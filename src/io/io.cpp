@@ -94,6 +94,9 @@ Mesh read_mesh(const std::filesystem::path& path, const ReadOptions& options,
     input.fail("only PLY files have named numbers, such as " + io::in_quotes(options.value_name));
   }
   if (mesh.is_point_cloud()) mesh.marked_edges = {};
+  if (options.paint && mesh.values.empty()) {
+    input.fail("only PLY and OBJ files have colours at their vertices");
+  }
   normalize(mesh.normals);
   if (options.weld) weld(mesh);
   context.progress("read", 1);

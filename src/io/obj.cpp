@@ -10,6 +10,7 @@
 
 #include "io/coordinates.h"
 #include "io/formats.h"
+#include "io/paint.h"
 #include "io/text.h"
 #include "mesh/border.h"
 #include "mesh/join_edges.h"
@@ -84,6 +85,7 @@ class Reader {
       const double y = text_.number("coordinate y");
       const double z = text_.number("coordinate z");
       coordinates_.push(x, y, z);
+      if (input_.options().paint) read_paint();
     } else if (text_.word_is("f")) {
       read_corners();
       if (corners_.size() >= 3) add_face();
@@ -116,6 +118,14 @@ class Reader {
       n.setZero();
     }
     shading_.normals.push_back(n.cast<float>());
+  }
+
+  /// The colour after a position: three numbers from 0 to 1.
+  void read_paint() {
+    const double red = text_.number("the vertex's red, from 0 to 1");
+    const double green = text_.number("the vertex's green");
+    const double blue = text_.number("the vertex's blue");
+    mesh_.values.push_back(paint_of(red, green, blue));
   }
 
   void read_corners() {

@@ -19,6 +19,7 @@
 
 #include "io/coordinates.h"
 #include "io/formats.h"
+#include "io/paint.h"
 #include "io/ply_header.h"
 #include "io/range_grid.h"
 #include "io/text.h"
@@ -218,6 +219,7 @@ class Reader {
             text_.fail(element.at, "element vertex has two numbers " + in_quotes(property.name));
           }
           columns_[c].found = true;
+          columns_[c].largest = ply::largest_of(property.type);
           column = c;
         }
       }
@@ -441,10 +443,23 @@ bool is_ply(std::string_view bytes) {
 
 Mesh read_ply(const Input& input) {
   const std::string& value_name = input.options().value_name;
-  if (value_name.empty()) return ply::read(input, {});
-  ply::Column values{value_name, true, false, {}};
-  Mesh mesh = ply::read(input, {&values, 1});
-  mesh.values.assign(values.numbers.begin(), values.numbers.end());
+  std::vector<ply::Column> columns;
+  if (!value_name.empty()) columns.push_back({.name = value_name, .required = true});
+  if (input.options().paint) {
+    for (const char* name : {"red", "green", "blue"}) {
+      columns.push_back({.name = name, .required = true});
+    }
+  }
+  Mesh mesh = ply::read(input, columns);
+  if (!value_name.empty()) {
+    mesh.values.assign(columns[0].numbers.begin(), columns[0].numbers.end());
+  } else if (input.options().paint) {
+    mesh.values.resize(mesh.positions.size());
+    for (std::size_t v = 0; v < mesh.values.size(); ++v) {
+      const auto share = [&](std::size_t c) { return columns[c].numbers[v] / columns[c].largest; };
+      mesh.values[v] = paint_of(share(0), share(1), share(2));
+    }
+  }
   return mesh;
 }
 

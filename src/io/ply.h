@@ -17,7 +17,8 @@ struct Column {
   std::string name;
   bool required = false;  // reading fails without it
   bool found = false;
-  std::vector<double> numbers;  // one a vertex if found; finite in single precision
+  std::vector<double> numbers{};  // one a vertex if found; finite in single precision
+  double largest = 1;             // that the file's type holds; 1 if that is not of whole numbers
 };
 
 Mesh read(const Input& input, std::span<Column> columns,

@@ -20,6 +20,12 @@ constexpr std::size_t size_of(Type type) {
   return sizes[static_cast<std::size_t>(type)];
 }
 
+/// The largest number of a type of whole numbers; 1 of the others.
+constexpr double largest_of(Type type) {
+  constexpr double largest[] = {127, 255, 32767, 65535, 2147483647, 4294967295, 1, 1};
+  return largest[static_cast<std::size_t>(type)];
+}
+
 struct Property {
   std::string_view name;
   Type type;

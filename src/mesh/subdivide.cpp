@@ -109,9 +109,10 @@ void split(const std::vector<Vec3>& positions, std::array<Index, 3> v, std::arra
   }
 }
 
-/// Returns whether any edge was split.
-template <typename Limit>
-bool split_long_edges(Mesh& mesh, const Limit& limit, const Context& context) {
+/// Returns whether any edge was split. `on_split` is told of the edge that each new vertex lies on.
+template <typename Limit, typename Split>
+bool split_long_edges(Mesh& mesh, const Limit& limit, const Split& on_split,
+                      const Context& context) {
   if (mesh.faces.empty()) return false;
   // Each round halves what is too long, so 64 rounds pass any finite length in single precision.
   for (int round = 0; round < 64; ++round) {
@@ -127,6 +128,7 @@ bool split_long_edges(Mesh& mesh, const Limit& limit, const Context& context) {
     for (Index a = 0; a < old_count; ++a) {
       for (Index e = midpoints.offsets[a]; e < midpoints.offsets[a + 1]; ++e) {
         append_midpoint(mesh, a, midpoints.ends[e]);
+        on_split(a, midpoints.ends[e]);
       }
     }
     Faces finer;
@@ -152,13 +154,13 @@ bool split_long_edges(Mesh& mesh, const Limit& limit, const Context& context) {
 void subdivide(Mesh& mesh, double max_length, const Context& context) {
   const auto longest = static_cast<float>(max_length);
   split_long_edges(
-      mesh, [&](Index, Index) { return longest; }, context);
+      mesh, [&](Index, Index) { return longest; }, [](Index, Index) {}, context);
 }
 
-bool subdivide_by_values(Mesh& mesh, double factor, const Context& context) {
-  const auto share = static_cast<float>(factor);
+bool subdivide(Mesh& mesh, std::vector<float>& max_lengths, const Context& context) {
   return split_long_edges(
-      mesh, [&](Index a, Index b) { return share * std::min(mesh.values[a], mesh.values[b]); },
+      mesh, [&](Index a, Index b) { return std::min(max_lengths[a], max_lengths[b]); },
+      [&](Index a, Index b) { max_lengths.push_back(0.5f * (max_lengths[a] + max_lengths[b])); },
       context);
 }
 
