@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <tuple>
 
@@ -197,6 +198,41 @@ TEST(Adaptive, IsNearerToTheSurface) {
     EXPECT_LT(distance(adaptive(1, 1500)), 0.75 * uniform);
     EXPECT_LT(distance(adaptive(0.5, 1500)), 0.95 * uniform);
   }
+}
+
+TEST(Adaptive, RimsOfHolesBendToo) {
+  // A flat ring, of radii 0.2 and 2.
+  constexpr Index around = 96, across = 40;
+  Mesh ring;
+  for (Index j = 0; j <= across; ++j) {
+    for (Index i = 0; i < around; ++i) {
+      const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(i) / around;
+      const float radius = 0.2f + 1.8f * static_cast<float>(j) / across;
+      ring.positions.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0);
+    }
+  }
+  for (Index j = 0; j < across; ++j) {
+    for (Index i = 0; i < around; ++i) {
+      const Index next = (i + 1) % around;
+      const Index a = j * around + i, b = j * around + next;
+      ring.faces.push_back({a, a + around, b + around});
+      ring.faces.push_back({a, b + around, b});
+    }
+  }
+  const auto ratio = [&](double strength) {
+    const Mesh mesh = remesh(ring, adaptive(strength, 1200)).mesh;
+    EXPECT_NEAR(static_cast<double>(mesh.faces.size()), 1200, 12.1);
+    std::array<double, 2> area{}, count{};
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+      const float radius = mesh.positions[mesh.faces[f][0]].norm();
+      if ((radius > 0.3f && radius < 0.9f) || radius > 1.5f) continue;
+      area[radius > 0.5f] += face_area(mesh, f);
+      count[radius > 0.5f] += 1;
+    }
+    return (area[1] / count[1]) / (area[0] / count[0]);
+  };
+  EXPECT_NEAR(ratio(0), 1, 0.3);
+  EXPECT_GT(ratio(1), 2);
 }
 
 TEST(Adaptive, LeavesASphereEven) {

@@ -1,7 +1,9 @@
 #include "meshgrain/sizing.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <functional>
 #include <queue>
 #include <utility>
@@ -12,6 +14,30 @@
 namespace meshgrain {
 namespace {
 
+/// How strongly a line turns at each of its vertices but the ends: by what angle, from the way that
+/// comes there to the way that goes on, both about `arm` long, over that length.
+template <typename Use>
+void for_each_turn(const FeatureLines& lines, double arm, const Use& use) {
+  for (std::size_t line = 0; line < lines.size(); ++line) {
+    const auto begin = static_cast<std::ptrdiff_t>(lines.begin(line));
+    const auto end = static_cast<std::ptrdiff_t>(lines.end(line));
+    const auto point = [&](std::ptrdiff_t k) {
+      return lines.positions[static_cast<std::size_t>(k)];
+    };
+    for (std::ptrdiff_t k = begin + 1; k + 1 < end; ++k) {
+      const auto way = [&](std::ptrdiff_t step) {
+        std::ptrdiff_t j = k + step;
+        while (j > begin && j + 1 < end && (point(j) - point(k)).norm() < arm) j += step;
+        return Vec3(point(j) - point(k));
+      };
+      const Vec3 back = way(-1), on = way(1);
+      const double length = (static_cast<double>(back.norm()) + on.norm()) / 2;
+      const double angle = std::atan2(back.cross(on).norm(), -back.dot(on));
+      if (length > 0) use(lines.vertices[static_cast<std::size_t>(k)], angle / length);
+    }
+  }
+}
+
 /// A chord of length h leaves a surface of curvature k by about k h² / 8. The mean square of that
 /// over the surface is least, for a given number of faces (the integral of 1 / h²), if h is
 /// proportional to the cube root of 1 / k. Besides, what is round must have room for some faces
@@ -21,7 +47,10 @@ std::vector<float> lengths_by_bending(const Hierarchy& hierarchy, const Mesh& su
                                       double face_side, const Context& context) {
   const Graph& graph = hierarchy.levels[0];
   const double patch = 0.5 * face_side;  // finer bends than this are noise to such faces
-  const auto bends = bending(hierarchy, surface, creases, patch * patch, context);
+  auto bends = bending(hierarchy, surface, creases, patch * patch, context);
+  for_each_turn(creases, patch, [&](Index node, double bend) {
+    bends[node] = std::max(bends[node], static_cast<float>(bend));
+  });
   double sum = 0, area = 0;
   for (std::size_t i = 0; i < bends.size(); ++i) {
     sum += static_cast<double>(graph.areas[i]) * bends[i];
