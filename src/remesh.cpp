@@ -151,9 +151,8 @@ class Pipeline {
     if (is_cloud_ || !nodes_are_vertices_) return;
     if (options_.features.creases != Creases::automatic) return;
     stage_("noise", [&] {
-      const double length = target_.edge_length(surface_area(surface_));
-      const bool halved = options_.faces == OutputFaces::quads;
-      is_sharpened_ = sharpen_noisy_part(surface_, halved ? length / 2 : length, context_);
+      const double side = target_.face_side(surface_area(surface_));
+      is_sharpened_ = sharpen_noisy_part(surface_, side, context_);
       if (!is_sharpened_) return;
       result_.report.notes.push_back(
           "a noisy scan of a mechanical part: its noise was taken out to make its creases sharp");

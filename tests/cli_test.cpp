@@ -485,7 +485,7 @@ TEST_F(Cli, WrongUsageIsRefused) {
   refused("--symmetry w", "--symmetry");
   refused("--symmetry ''", "--symmetry");
   refused("-c 181", "--crease");
-  refused("-c sharp", "auto, off");
+  refused("-c sharp", "auto, marked, off");
   refused("-p 5", "--posy");
   refused("-r 3", "--rosy");
   refused("-r 6", "-p 6");
