@@ -1,10 +1,10 @@
 """The work of scripts/evaluate: one table of figures, and a picture of each model."""
 
-import json
-import os
-import subprocess
 import sys
 from pathlib import Path
+
+from evaluate_options import evaluate_options
+from evaluate_run import cell, run, stats
 
 COUNTS = (500, 5000, 50000)
 SUFFIXES = {".obj", ".ply", ".off", ".stl"}
@@ -14,26 +14,10 @@ COLUMNS = (
     ("area σ", lambda s: s["area"]["sigma"]),
     ("angle σ", lambda s: s["angle"]["sigma"]),
     ("inverted", lambda s: s["inverted_quads"]),
-    ("distance", lambda s: s["distance_to_input"]["mean"] / s["diagonal"]),
-    ("farthest", lambda s: s["distance_from_input"]["max"] / s["diagonal"]),
+    ("distance", lambda s: s["distance_to_input"]["mean"]),
+    ("farthest", lambda s: s["distance_from_input"]["max"]),
 )
 TOPOLOGY = ("euler", "components", "boundary_loops")
-
-meshgrain = os.environ["MESHGRAIN"]
-
-
-def run(*arguments):
-    return subprocess.run([meshgrain, *map(str, arguments)], check=True, capture_output=True,
-                          text=True).stdout
-
-
-def stats(*arguments):
-    return json.loads(run("stats", *arguments, "--json"))
-
-
-def cell(value):
-    return str(value) if isinstance(value, int) else f"{value:.3g}"
-
 
 def main(folder, work, output):
     models = sorted(p for p in Path(folder).iterdir() if p.suffix.lower() in SUFFIXES)
@@ -70,6 +54,7 @@ def main(folder, work, output):
         if models:
             means = (cell(total / len(models)) for total in sums)
             lines.append("| **mean** | " + " | ".join(means) + " | |")
+    lines += evaluate_options(work, images, output.stem)
     lines += ["", "## Pictures", "", "At 5,000 quads.", ""]
     lines += [f"![{m.stem}](images/{output.stem}/{m.stem}.png)" for m in models]
     output.write_text("\n".join(lines) + "\n")

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "kept_creases.h"
-#include "made_points.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
 #include "meshgrain/statistics.h"
@@ -17,13 +16,8 @@
 namespace meshgrain {
 namespace {
 
-/// Every vertex moved by a fifth of an edge, each in a direction of its own.
-Mesh scan(Mesh mesh, float share = 0.2f) {
-  const auto step = share * static_cast<float>(edge_lengths(mesh).mean);
-  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    const Vec3 d(made::noise(3 * v), made::noise(3 * v + 1), made::noise(3 * v + 2));
-    mesh.positions[v] += step * d.normalized();
-  }
+Mesh scan(Mesh mesh, double noise = 0.2) {
+  add_noise(mesh, noise);
   return mesh;
 }
 
@@ -74,7 +68,7 @@ TEST(Denoise, SurfacesComeNearerToThePart) {
 /// Sculptures, noisy or not, and parts without noise.
 TEST(Denoise, AllElseStaysAsItIs) {
   for (const char* name : {"sphere", "torus", "blob", "three-holes"}) {
-    for (const float noise : {0.0f, 0.05f, 0.2f, 0.4f}) {
+    for (const double noise : {0.0, 0.05, 0.2, 0.4}) {
       const Mesh before = scan(sample_shape(name), noise);
       Mesh after = before;
       EXPECT_FALSE(sharpen_noisy_part(after, output_edge(before, 2000), Context())) << name;

@@ -10,6 +10,8 @@
 #include "measure/bvh.h"
 #include "meshgrain/error.h"
 #include "meshgrain/shapes.h"
+#include "meshgrain/surface.h"
+#include "meshgrain/surface.h"
 #include "util/triangle.h"
 
 namespace meshgrain {
@@ -251,6 +253,30 @@ TEST(MeshStatistics, AHoneycombIsRegular) {
   EXPECT_EQ(s.irregular_vertices, 0u);
   EXPECT_EQ(s.singularities, 0u);
   EXPECT_NEAR(s.angle_sigma, 0, 1e-3);
+}
+
+TEST(KeptLines, AreAllOfThemInTheSameMesh) {
+  const Mesh cube = sample_shape("cube"), plate = sample_shape("plate");
+  const KeptLines of_cube = kept_lines(cube, cube), of_plate = kept_lines(plate, plate);
+  EXPECT_EQ(of_cube.creases, 1.0);
+  EXPECT_FALSE(of_cube.border);
+  EXPECT_EQ(of_cube.corners, 8u);
+  EXPECT_EQ(of_cube.corners_kept, 8u);
+  EXPECT_EQ(of_plate.border, 1.0);
+  EXPECT_FALSE(of_plate.creases);
+}
+
+/// A cube whose upper face has sunk by half an edge keeps the lower square, and that alone.
+TEST(KeptLines, AreMissedWhereTheyAreFar) {
+  const Mesh cube = sample_shape("cube");
+  Mesh sunk = cube;
+  const auto step = static_cast<float>(edge_lengths(cube).mean / 2);
+  for (Vec3& p : sunk.positions) {
+    if (p.z() > 0.499f) p.z() -= step;
+  }
+  const KeptLines kept = kept_lines(cube, sunk);
+  EXPECT_NEAR(*kept.creases, 8.0 / 12, 0.02);
+  EXPECT_EQ(kept.corners_kept, 4u);
 }
 
 }  // namespace

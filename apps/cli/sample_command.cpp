@@ -14,7 +14,7 @@ namespace meshgrain::cli {
 
 void sample_command(int argc, char** argv) {
   std::string name, output;
-  double resolution = 1;
+  double resolution = 1, noise = 0;
   CLI::App app("Makes a shape to try things on; without a name, lists the names.",
                "meshgrain sample");
   app.add_option("NAME", name, "the shape");
@@ -22,6 +22,9 @@ void sample_command(int argc, char** argv) {
       ->type_name("FILE");
   app.add_option("--resolution", resolution, "vertices along a side, relative to the usual (1)")
       ->type_name("R");
+  app.add_option("--noise", noise, "move every vertex by this share of an edge, as in a scan (0)")
+      ->check(CLI::Range(0.0, 10.0))
+      ->type_name("SHARE");
   if (!parse(app, argc, argv)) return;
 
   const auto names = sample_names();
@@ -36,7 +39,8 @@ void sample_command(int argc, char** argv) {
   }
   if (output.empty()) output = name + ".obj";
   check_writable(output);
-  const Mesh mesh = sample_shape(name, resolution);
+  Mesh mesh = sample_shape(name, resolution);
+  if (noise > 0) add_noise(mesh, noise);
   write_mesh(output, mesh);
   if (stderr_is_terminal()) {
     fmt::print(stderr, "{}: {}, {}\n", file_name(output),

@@ -13,6 +13,7 @@
 #include "meshgrain/io.h"
 #include "meshgrain/singularities.h"
 #include "meshgrain/statistics.h"
+#include "meshgrain/triangulate.h"
 #include "report.h"
 
 namespace meshgrain::cli {
@@ -21,6 +22,7 @@ namespace {
 struct Comparison {
   double diagonal = 0;
   SurfaceDistance to_input, from_input;
+  KeptLines lines;
 };
 
 void line(std::string_view name, const std::string& value, const std::string& remark = "") {
@@ -79,6 +81,16 @@ void print(const std::string& name, const MeshStatistics& s,
   };
   distance("from mesh to input", comparison->to_input);
   distance("from input to mesh", comparison->from_input);
+  const KeptLines& lines = comparison->lines;
+  const auto share = [](const char* title, const std::optional<double>& kept) {
+    if (kept) line(title, fmt::format("{:.1f} %", 100 * *kept));
+  };
+  if (lines.creases || lines.border) fmt::print("\n");
+  share("creases followed", lines.creases);
+  share("border followed", lines.border);
+  if (lines.corners > 0) {
+    line("corners kept", fmt::format("{} of {}", lines.corners_kept, lines.corners));
+  }
 }
 
 }  // namespace
@@ -92,7 +104,10 @@ void stats_command(int argc, char** argv) {
       "vertices and faces other than the prevailing kind.",
       "meshgrain stats");
   app.add_option("MESH", path, "the mesh")->required();
-  app.add_option("--against", against, "also the distances to this mesh or point cloud, its input")
+  app.add_option(
+         "--against", against,
+         "also the distances to this mesh or point cloud, its input, and how much of its creases "
+         "and border the edges follow")
       ->type_name("INPUT");
   app.add_option("--fields", fields_path, "also the singularities of the orientation field in here")
       ->type_name("FILE");
@@ -124,6 +139,7 @@ void stats_command(int argc, char** argv) {
       comparison->diagonal = bounding_diagonal(input);
       comparison->to_input = surface_distance(mesh, input, comparison->diagonal, 100000, context);
       comparison->from_input = surface_distance(input, mesh, comparison->diagonal, 100000, context);
+      if (!input.is_point_cloud()) comparison->lines = kept_lines(triangulate(input), mesh);
     }
     if (!as_json) return print(file_name(path), statistics, of_orientation, comparison);
     Json json = to_json(statistics);
@@ -132,6 +148,13 @@ void stats_command(int argc, char** argv) {
       json["diagonal"] = comparison->diagonal;
       json["distance_to_input"] = to_json(comparison->to_input);
       json["distance_from_input"] = to_json(comparison->from_input);
+      const KeptLines& lines = comparison->lines;
+      if (lines.creases) json["creases_followed"] = *lines.creases;
+      if (lines.border) json["border_followed"] = *lines.border;
+      if (lines.corners > 0) {
+        json["corners"] = lines.corners;
+        json["corners_kept"] = lines.corners_kept;
+      }
     }
     fmt::print("{}\n", json.dump(2));
   });

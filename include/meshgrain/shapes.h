@@ -30,4 +30,8 @@ std::vector<std::string> sample_names();
 /// Throws Error for an unknown name and for a resolution out of range.
 Mesh sample_shape(std::string_view name, double resolution = 1);
 
+/// Moves every vertex by `share` of the mean edge length, each in a direction of its own, as a scan
+/// would. The same noise each time.
+void add_noise(Mesh& mesh, double share);
+
 }  // namespace meshgrain

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 #include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
@@ -47,6 +48,18 @@ struct SurfaceDistance {
 /// reference length is not positive.
 SurfaceDistance surface_distance(const Mesh& from, const Mesh& to, double reference_length,
                                  std::size_t samples = 100000, const Context& context = Context());
+
+/// How much of the lines of one surface the edges of another follow.
+struct KeptLines {
+  /// Shares of the length of creases and border that edges of the same kind are near (a tenth of an
+  /// edge) and along; creases may be half as sharp. Absent where there are none.
+  std::optional<double> creases, border;
+  /// Where creases meet or turn by more than 40 degrees, and how many have a vertex as near.
+  std::size_t corners = 0, corners_kept = 0;
+};
+
+/// Creases are edges between faces whose normals differ by more than `crease_degrees`.
+KeptLines kept_lines(const Mesh& input, const Mesh& output, double crease_degrees = 40);
 
 /// Length of the diagonal of the bounding box of the vertices that faces use (all, for a cloud).
 double bounding_diagonal(const Mesh& mesh);

@@ -1,0 +1,87 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include "measure/bvh.h"
+#include "mesh/border.h"
+#include "meshgrain/statistics.h"
+#include "meshgrain/surface.h"
+
+namespace meshgrain {
+namespace {
+
+using Edges = std::vector<std::array<Index, 2>>;
+
+constexpr double near = 0.1;  // edges of the output
+
+/// The share of the length of `lines` that is near an edge of `others` and along it.
+double followed(const Mesh& input, const Edges& lines, const Mesh& output, const Edges& others,
+                double edge) {
+  Mesh segments;  // triangles without area
+  segments.positions = output.positions;
+  for (const auto& [a, b] : others) segments.faces.push_back({a, b, b});
+  if (others.empty()) return 0;
+  const Bvh tree(segments);
+  const Eigen::Vector3d shift = input.origin - output.origin;
+  double length = 0, kept = 0;
+  for (const auto& [a, b] : lines) {
+    const Eigen::Vector3d p = input.positions[a].cast<double>() + shift;
+    const Eigen::Vector3d along = (input.positions[b] - input.positions[a]).cast<double>();
+    const auto samples = static_cast<int>(std::ceil(along.norm() / (edge / 4)));
+    for (int k = 0; k < samples; ++k) {
+      const double step = along.norm() / samples;
+      length += step;
+      const auto hit = tree.closest(p + (k + 0.5) / samples * along, near * near * edge * edge);
+      if (hit.triangle == no_index) continue;
+      const auto [c, d] = others[hit.triangle];
+      const Eigen::Vector3d other = (output.positions[d] - output.positions[c]).cast<double>();
+      constexpr double cos20 = 0.94;
+      if (std::abs(along.dot(other)) > cos20 * along.norm() * other.norm()) kept += step;
+    }
+  }
+  return kept / length;
+}
+
+/// Where creases meet, or turn by more than 40 degrees.
+std::vector<Index> corners_of(const Mesh& mesh, const Edges& creases) {
+  std::map<Index, std::vector<Vec3>> spokes;
+  for (const auto& [a, b] : creases) {
+    const Vec3 along = (mesh.positions[b] - mesh.positions[a]).normalized();
+    spokes[a].push_back(along);
+    spokes[b].push_back(-along);
+  }
+  std::vector<Index> result;
+  for (const auto& [v, directions] : spokes) {
+    constexpr float cos40 = 0.766f;
+    const bool straight = directions.size() == 2 && directions[0].dot(directions[1]) < -cos40;
+    if (directions.size() > 1 && !straight) result.push_back(v);
+  }
+  return result;
+}
+
+}  // namespace
+
+KeptLines kept_lines(const Mesh& input, const Mesh& output, double crease_degrees) {
+  KeptLines result;
+  const double edge = edge_lengths(output).mean;
+  const Edges creases = crease_edges(input, crease_degrees);
+  if (!creases.empty()) {
+    result.creases =
+        followed(input, creases, output, crease_edges(output, crease_degrees / 2), edge);
+  }
+  const Edges border = border_edges(input);
+  if (!border.empty()) result.border = followed(input, border, output, border_edges(output), edge);
+  Mesh points;
+  points.positions = output.positions;
+  const Bvh tree(points);
+  for (const Index v : corners_of(input, creases)) {
+    const Eigen::Vector3d p = input.positions[v].cast<double>() + input.origin - output.origin;
+    ++result.corners;
+    result.corners_kept += tree.closest(p, near * near * edge * edge).triangle != no_index;
+  }
+  return result;
+}
+
+}  // namespace meshgrain
