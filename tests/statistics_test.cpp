@@ -11,7 +11,6 @@
 #include "meshgrain/error.h"
 #include "meshgrain/shapes.h"
 #include "meshgrain/surface.h"
-#include "meshgrain/surface.h"
 #include "util/triangle.h"
 
 namespace meshgrain {
