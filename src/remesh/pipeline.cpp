@@ -1,0 +1,372 @@
+#include "remesh/pipeline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "denoise/denoise.h"
+#include "extract/reduce_faces.h"
+#include "extract/remove_strips.h"
+#include "field/transfer.h"
+#include "mesh/border.h"
+#include "meshgrain/clean.h"
+#include "meshgrain/error.h"
+#include "meshgrain/finish.h"
+#include "meshgrain/singularities.h"
+#include "meshgrain/surface.h"
+#include "meshgrain/triangulate.h"
+#include "remesh/notes.h"
+
+namespace meshgrain {
+namespace {
+
+/// Pairs of neighbouring faces that both touch the border.
+std::vector<std::array<Index, 2>> border_of_faces(const Mesh& surface, const Graph& graph) {
+  std::vector<std::uint8_t> on_border(surface.positions.size(), 0);
+  for (const auto& [a, b] : border_edges(surface)) on_border[a] = on_border[b] = 1;
+  const auto touches = [&](Index f) {
+    const auto face = surface.faces[f];
+    return on_border[face[0]] || on_border[face[1]] || on_border[face[2]];
+  };
+  std::vector<std::array<Index, 2>> result;
+  for (Index f = 0; f < graph.size(); ++f) {
+    for (const Index g : graph.neighbors_of(f)) {
+      if (f < g && touches(f) && touches(g)) result.push_back({f, g});
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+Pipeline::Pipeline(const Mesh& input, const RemeshOptions& options, const Context& context)
+    : options_(options),
+      context_(context),
+      stage_(context, result_.report.stages),
+      is_cloud_(input.is_point_cloud()),
+      nodes_are_vertices_(is_cloud_ || options.graph.nodes == GraphNodes::vertices) {
+  result_.report.input_vertices = input.positions.size();
+  result_.report.input_faces = input.faces.size();
+}
+
+void Pipeline::clean_up(Mesh input) {
+  stage_("clean", [&] {
+    result_.report.notes = describe(clean(input));
+    frame_ = unit_frame(input);
+    target_ = Target(options_, result_.report.input_vertices, frame_.scale);
+    enter(frame_, input);
+    surface_ = is_cloud_ ? std::move(input) : triangulate(input);
+    drop_pieces();
+  });
+}
+
+void Pipeline::sharpen() {
+  if (is_cloud_ || !nodes_are_vertices_) return;
+  if (options_.features.creases != Creases::automatic) return;
+  stage_("noise", [&] {
+    const double side = target_.face_side(surface_area(surface_));
+    is_sharpened_ = sharpen_noisy_part(surface_, side, context_);
+    if (!is_sharpened_) return;
+    result_.report.notes.push_back(
+        "a noisy scan of a mechanical part: its noise was taken out to make its creases sharp");
+  });
+}
+
+void Pipeline::refine() {
+  if (!is_cloud_) {
+    stage_("subdivide", [&] {
+      const double area = surface_area(surface_);
+      if (!(area > 0)) throw Error("the input has no surface: all of its faces are degenerate");
+      // Where faces vary in size, and nothing can be split later on, fine enough for the
+      // smallest.
+      const bool once = !nodes_are_vertices_ || !options_.guides.empty();
+      const bool varied = once && !options_.sizing.is_uniform();
+      const double length = target_.edge_length(area) / (varied ? options_.sizing.ratio : 1);
+      const EdgeLengths edges = edge_lengths(surface_);
+      const double limit = std::min(length / 2, 2 * edges.mean);
+      if (edges.max > limit) subdivide(surface_, limit, context_);
+    });
+  }
+  if (!is_cloud_) lay_guides(target_.edge_length(surface_area(surface_)));
+  stage_("order", [&] {
+    const std::vector<Index> order = sort_along_curve(surface_, context_);
+    if (!guides_.edges.empty()) renumber(guides_, order);
+  });
+}
+
+void Pipeline::build_levels() {
+  Graph finest = stage_("graph", [&] { return build_graph(surface_, options_.graph, context_); });
+  result_.report.nodes = finest.size();
+  result_.report.edges = finest.neighbors.size() / 2;
+  stage_("hierarchy", [&] { hierarchy_ = build_hierarchy(std::move(finest), context_); });
+  result_.report.levels = hierarchy_.levels.size();
+}
+
+void Pipeline::find_lines() {
+  area_ = 0;
+  for (const float a : graph().areas) area_ += a;
+  mean_length_ = target_.edge_length(area_);
+  if (is_cloud_) {
+    soft_guides_.clear();
+    lay_guides(mean_length_);
+  }
+  constraints_ = guide_constraints(graph(), soft_guides_);
+  if (is_cloud_ || !nodes_are_vertices_) return;
+  stage_("features", [&] {
+    FeatureOptions options = options_.features;
+    if (options_.orientation_energy != OrientationEnergy::extrinsic) options.orient_creases = 1;
+    // Triangles cannot follow two creases that meet at right angles.
+    if (posy_of(options_.faces) == 6) options.align_creases = 0.3f;
+    if (is_sharpened_) options.creases = Creases::marked;
+    features_ = find_features(surface_, options, guides_, target_.face_side(area_), context_);
+    append(feature_constraints(features_));
+    append(guide_constraints(guides_, features_.corners));
+  });
+}
+
+void Pipeline::size_faces() {
+  Sizing sizing = options_.sizing;
+  sizing.point = frame_.inside(sizing.point);
+  const EdgeLength relative = relative_edge_lengths(hierarchy_, surface_, features_, sizing,
+                                                    target_.face_side(area_), context_);
+  lengths_ = target_.edge_lengths(graph(), relative, growth(), context_);
+}
+
+void Pipeline::refine_for_sizes() {
+  // Guides are cut into the surface by now.
+  const bool may_split = !is_cloud_ && nodes_are_vertices_ && options_.guides.empty();
+  if (!may_split || lengths_.uniform()) return;
+  std::vector<float> longest = scaled(lengths_, 0.5).values;
+  if (!stage_("subdivide", [&] { return subdivide(surface_, longest, context_); })) return;
+  stage_("order", [&] {
+    const std::vector<Index> order = sort_along_curve(surface_, context_);
+    lengths_.values.resize(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) lengths_.values[i] = 2 * longest[order[i]];
+  });
+  build_levels();
+  find_lines();
+  lengths_ = graded(graph(), lengths_, growth(), context_);
+}
+
+void Pipeline::orient() {
+  stage_("orientation field", [&] {
+    if (options_.fields != nullptr) {
+      fields().orientation = transfer_orientation(*options_.fields, graph(), frame_, context_);
+      return;
+    }
+    OrientationOptions orientation;
+    static_cast<SolverOptions&>(orientation) = options_.solver;
+    orientation.rosy = options_.rosy != 0 ? options_.rosy : posy_of(options_.faces);
+    orientation.energy = options_.orientation_energy;
+    auto constraints = curvature_constraints(graph(), static_cast<float>(mean_length_),
+                                             options_.curvature, context_);
+    constraints.insert(constraints.end(), constraints_.orientation.begin(),
+                       constraints_.orientation.end());
+    const auto solver = OrientationSolver::create(hierarchy_, orientation, constraints);
+    while (solver->step(context_)) context_.progress("orientation field", solver->progress());
+    fields().orientation = solver->field();
+    result_.report.orientation_energies = solver->energies();
+  });
+}
+
+void Pipeline::position_and_extract() {
+  constexpr int attempts = 8;
+  constexpr double tolerance = 0.008;
+  const bool given = options_.fields != nullptr && !options_.fields->position.points.empty();
+  double least_error = std::numeric_limits<double>::infinity();
+  for (int attempt = 0; attempt < attempts; ++attempt) {
+    PositionField positions = stage_("position field", [&] {
+      return given ? transfer_position(*options_.fields, graph(), frame_, context_)
+                   : solve_positions();
+    });
+    Extraction found = stage_("extraction", [&] { return extract(positions); });
+    const double ratio = target_.count_ratio(found.mesh);
+    // A few faces too many can be taken away, but not added.
+    const bool met = std::abs(ratio - 1) < tolerance;
+    const double error = met ? 0 : ratio < 1 ? 1 / ratio - 1 : (ratio - 1) / 5;
+    if (error < least_error) {
+      least_error = error;
+      extraction_ = std::move(found);
+      fields().position = std::move(positions);
+    }
+    const double closing = attempt < 3 ? tolerance : 0.03;
+    if (given || (ratio > 1 - tolerance && ratio < 1 + closing)) break;
+    const double aim = attempt < 3 ? 1 : 1.01;
+    const double factor = std::clamp(std::sqrt(ratio / aim), 0.5, 2.0);
+    lengths_ = graded(graph(), scaled(lengths_, factor), growth(), context_);
+  }
+  const double ratio = target_.count_ratio(extraction_.mesh);
+  if (ratio > 1 + tolerance && ratio < 1.2) {
+    stage_("extraction", [&] { take_away_faces(tolerance); });
+  }
+  if (extraction_.mesh.faces.empty()) {
+    throw Error(
+        "nothing is left of the surface at this target: ask for more faces, or shorter edges");
+  }
+  result_.report.edge_length = fields().position.edge_length[0] * frame_.scale;
+}
+
+void Pipeline::take_away_faces(double tolerance) {
+  if (options_.faces == OutputFaces::quads) {
+    Extraction quads = extraction_;
+    split_into_quads(quads);
+    const auto count = static_cast<double>(quads.mesh.faces.size());
+    const double wanted = count / target_.count_ratio(extraction_.mesh);
+    constexpr double one_percent = 0.0099;  // strips are long: all that may be
+    const auto least = static_cast<std::size_t>(std::ceil(count - (1 + one_percent) * wanted));
+    const auto most = static_cast<std::size_t>(count - (1 - one_percent) * wanted);
+    if (remove_strips(quads, least, most, context_)) {
+      extraction_ = std::move(quads);
+      is_split_ = true;
+      return;
+    }
+  }
+  reduce_faces(extraction_, posy_of(options_.faces),
+               target_.faces_to_close(extraction_.mesh, tolerance), context_);
+}
+
+void Pipeline::count_singularities() {
+  if (is_cloud_ || !nodes_are_vertices_) return;
+  stage_("singularities", [&] {
+    result_.report.orientation_singularities =
+        orientation_singularities(surface_, graph().normals, fields().orientation, context_).size();
+    result_.report.position_singularities =
+        position_singularities(surface_, graph(), fields().orientation, fields().position,
+                               options_.position_energy, context_)
+            .size();
+  });
+}
+
+void Pipeline::smooth_faces() {
+  stage_("smoothing", [&] {
+    if (options_.faces == OutputFaces::quads && !is_split_) split_into_quads(extraction_);
+    SmoothOptions smoothing;
+    smoothing.iterations = options_.smoothing;
+    // The more regular, the more the grid must stretch. Triangles of one size are regular; the
+    // triangles among quads are smaller than these.
+    if (options_.faces == OutputFaces::quads) {
+      smoothing.evenness = 0.59 + 0.12 * options_.regularity;
+    }
+    if (options_.faces == OutputFaces::triangles) smoothing.evenness = 0.87;
+    if (options_.faces == OutputFaces::quad_dominant) smoothing.evenness = 0.48;
+    const EdgeLength& lengths = fields().position.edge_length;
+    if (!lengths.uniform() && nodes_are_vertices_) smoothing.relative_size = lengths;
+    smoothing.lift = options_.sizing.adaptive;
+    if (!is_cloud_ && nodes_are_vertices_) smoothing.features = &features_;
+    smooth(extraction_, surface_, graph(), smoothing, context_);
+  });
+}
+
+void Pipeline::aim_at(const RemeshOptions& options) {
+  target_ = Target(options, result_.report.input_vertices, frame_.scale);
+  find_lines();
+  size_faces();
+}
+
+RemeshResult Pipeline::take_mesh(const RemeshReport& prepared) {
+  RemeshResult level;
+  level.mesh = std::move(extraction_.mesh);
+  leave(frame_, level.mesh);
+  level.report = std::exchange(result_.report, prepared);
+  extraction_ = {};
+  is_split_ = false;
+  return level;
+}
+
+RemeshResult Pipeline::result() && {
+  if (!nodes_are_vertices_) {  // the nodes are a cloud of their own
+    surface_ = Mesh();
+    surface_.positions = graph().positions;
+  }
+  fields().surface = std::move(surface_);
+  fields().surface.normals = graph().normals;
+  leave(frame_, fields());
+  result_.mesh = std::move(extraction_.mesh);
+  leave(frame_, result_.mesh);
+  return std::move(result_);
+}
+
+void Pipeline::drop_pieces() {
+  if (is_cloud_ || options_.min_component == 0) return;
+  const double area = options_.min_component * target_.face_area(surface_area(surface_));
+  if (const std::size_t dropped = drop_small_pieces(surface_, area)) {
+    result_.report.notes.push_back("left out " + std::to_string(dropped) +
+                                   " pieces with room for fewer than " +
+                                   std::to_string(std::lround(options_.min_component)) + " faces");
+  }
+}
+
+void Pipeline::lay_guides(double edge_length) {
+  if (options_.guides.empty()) return;
+  stage_("guides", [&] {
+    std::vector<Guide> guides = options_.guides;
+    for (Guide& guide : guides) {
+      for (Eigen::Vector3d& p : guide.points) p = frame_.inside(p);
+    }
+    std::vector<EdgeOfLine> lines;
+    const bool cut = !is_cloud_ && nodes_are_vertices_;
+    if (cut) lines = feature_edges(surface_, options_.features, context_);
+    TracedGuides traced = trace_guides(surface_, guides, lines, edge_length, frame_.scale);
+    result_.report.notes.insert(result_.report.notes.end(), traced.notes.begin(),
+                                traced.notes.end());
+    const auto is_hard = [&](const GuideRun& run) { return cut && run.strength == 1; };
+    std::vector<GuideRun> hard;
+    for (GuideRun& run : traced.runs)
+      (is_hard(run) ? hard : soft_guides_).push_back(std::move(run));
+    if (cut) guides_ = cut_guides(surface_, hard);
+  });
+}
+
+void Pipeline::append(const FeatureConstraints& more) {
+  constraints_.orientation.insert(constraints_.orientation.end(), more.orientation.begin(),
+                                  more.orientation.end());
+  constraints_.position.insert(constraints_.position.end(), more.position.begin(),
+                               more.position.end());
+}
+
+PositionField Pipeline::solve_positions() {
+  PositionOptions position;
+  static_cast<SolverOptions&>(position) = options_.solver;
+  position.posy = posy_of(options_.faces);
+  position.energy = options_.position_energy;
+  const auto solver = PositionSolver::create(hierarchy_, fields().orientation, lengths_, position,
+                                             constraints_.position);
+  while (solver->step(context_)) context_.progress("position field", solver->progress());
+  result_.report.position_energies = solver->energies();
+  return solver->field();
+}
+
+double Pipeline::cancelling_cost() const {
+  if (options_.regularity >= 1) return std::numeric_limits<double>::infinity();
+  const double least = options_.faces == OutputFaces::quads           ? 2.5
+                       : options_.faces == OutputFaces::quad_dominant ? 5.4
+                                                                      : 6;
+  // Sizes that vary need the dislocations where rows end.
+  const double regularity = options_.regularity / (lengths_.uniform() ? 1 : 2);
+  return least * (1 + 2 * regularity / (1 - regularity));
+}
+
+Extraction Pipeline::extract(const PositionField& positions) {
+  ExtractOptions extract;
+  extract.energy = options_.position_energy;
+  extract.manifold = options_.manifold;
+  extract.cancelling_cost = cancelling_cost();
+  if (is_cloud_) {
+    extract.largest_filled_gap = 12;  // a larger one may well be a hole
+  } else if (nodes_are_vertices_) {
+    extract.surface = &surface_;
+    extract.features = &features_;
+  } else {
+    extract.border = border_of_faces(surface_, graph());
+  }
+  Extraction found = extract_mesh(graph(), fields().orientation, positions, extract, context_);
+  if (!nodes_are_vertices_) {
+    for (Index& node : found.nodes) node = std::as_const(surface_.faces)[node][0];
+  }
+  if (options_.manifold) make_manifold(found);
+  if (options_.faces == OutputFaces::hexagons) take_dual(found);
+  return found;
+}
+
+}  // namespace meshgrain

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <vector>
+
+#include "features/find_features.h"
+#include "features/guide_constraints.h"
+#include "mesh/frame.h"
+#include "meshgrain/extract.h"
+#include "meshgrain/hierarchy.h"
+#include "meshgrain/remesh.h"
+#include "remesh/stages.h"
+#include "remesh/target.h"
+
+namespace meshgrain {
+
+/// The stages of remesh(), in their order: each leaves what the next ones need.
+class Pipeline {
+ public:
+  Pipeline(const Mesh& input, const RemeshOptions& options, const Context& context);
+
+  /// A clean surface of triangles (or points), about one unit large.
+  void clean_up(Mesh input);
+
+  /// Takes the noise out of a scan of a mechanical part.
+  void sharpen();
+
+  /// Fine enough for the target, and in the order of a curve.
+  void refine();
+  void build_levels();
+  void find_lines();
+  void size_faces();
+
+  /// Finer still where small faces are wanted.
+  void refine_for_sizes();
+  void orient();
+
+  /// Positions and the mesh. Where a count was asked for and missed, again with edges that much
+  /// longer or shorter. A few faces too many can be taken away one by one: that costs some
+  /// regularity, so that more of it is allowed only when other lengths have not helped.
+  void position_and_extract();
+  void count_singularities();
+  void smooth_faces();
+
+  /// Another target, not finer than the one that all was prepared for.
+  void aim_at(const RemeshOptions& options);
+
+  /// The mesh alone; the rest stays for the next one.
+  RemeshResult take_mesh(const RemeshReport& prepared);
+  const RemeshReport& report() const { return result_.report; }
+  RemeshResult result() &&;
+
+ private:
+  /// Whole strips if that can be, else single faces.
+  void take_away_faces(double tolerance);
+  void drop_pieces();
+
+  /// Guides onto the surface: those that edges must follow are cut into it.
+  void lay_guides(double edge_length);
+  void append(const FeatureConstraints& more);
+  double growth() const { return target_.growth(options_.sizing.grading); }
+  const Graph& graph() const { return hierarchy_.levels[0]; }
+  Fields& fields() { return result_.fields; }
+  PositionField solve_positions();
+
+  /// What regularity may cost (ExtractOptions): the lattice of pure quads is twice as coarse as
+  /// their edges, so that there the same cost bends the surface's grid over a longer way.
+  double cancelling_cost() const;
+  Extraction extract(const PositionField& positions);
+
+  const RemeshOptions& options_;
+  const Context& context_;
+  RemeshResult result_;
+  Stages stage_;
+  Frame frame_;
+  Target target_;
+  bool is_cloud_, nodes_are_vertices_;
+  bool is_sharpened_ = false;
+  Mesh surface_;
+  Hierarchy hierarchy_;
+  double area_ = 0, mean_length_ = 0;
+  EdgeLength lengths_;
+  GuideLines guides_;                  // that edges follow
+  std::vector<GuideRun> soft_guides_;  // that fields are drawn to
+  FeatureLines features_;
+  FeatureConstraints constraints_;
+  Extraction extraction_;
+  bool is_split_ = false;  // into the quads that are written
+};
+
+}  // namespace meshgrain
