@@ -80,6 +80,17 @@ TEST(Denoise, AllElseStaysAsItIs) {
   EXPECT_FALSE(sharpen_noisy_part(part, output_edge(part, 2000), Context()));
 }
 
+TEST(Denoise, SymmetryComesAfterIt) {
+  const Mesh part = sample_shape("cylinder", 2);
+  RemeshOptions options;
+  options.face_count = 3000;
+  options.symmetry.axes[0] = true;
+  const RemeshResult result = remesh(scan(part), options);
+  made::expect_same_topology(mesh_statistics(result.mesh), mesh_statistics(part));
+  EXPECT_GE(made::kept_creases(part, result.mesh).creases, 0.96);
+  EXPECT_EQ(result.report.notes.size(), 2u);  // this, and that it was made symmetric
+}
+
 TEST(Denoise, CanBeLeftOut) {
   RemeshOptions options;
   options.face_count = 2000;

@@ -67,9 +67,7 @@ void Pipeline::sharpen() {
   stage_("noise", [&] {
     const double side = target_.face_side(surface_area(surface_));
     is_sharpened_ = sharpen_noisy_part(surface_, side, context_);
-    if (!is_sharpened_) return;
-    result_.report.notes.push_back(
-        "a noisy scan of a mechanical part: its noise was taken out to make its creases sharp");
+    if (is_sharpened_) result_.report.notes.push_back(sharpened_note);
   });
 }
 

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <utility>
 
+#include "denoise/denoise.h"
 #include "meshgrain/clean.h"
 #include "meshgrain/error.h"
 #include "meshgrain/surface.h"
 #include "meshgrain/triangulate.h"
 #include "remesh/notes.h"
+#include "remesh/target.h"
 #include "symmetry/fold_guides.h"
 
 namespace meshgrain {
@@ -54,7 +56,17 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const Context& 
   if (options.edge_length == 0 && options.face_count == 0 && options.vertex_count == 0) {
     options.vertex_count = std::max<std::size_t>(vertices / 16, 1);
   }
-  if (!planes.empty()) input = triangulate(input);
+  if (!planes.empty()) {
+    input = triangulate(input);
+    // Before the cut, whose border has to stay where it is.
+    if (options.features.creases == Creases::automatic) {
+      const double side = Target(options, vertices, 1).face_side(surface_area(input));
+      if (sharpen_noisy_part(input, side, context)) {
+        notes.push_back(sharpened_note);
+        options.features.creases = Creases::marked;
+      }
+    }
+  }
   for (const MirrorPlane& plane : planes) {
     cut_at(input, plane);
     // Positions now count from the plane, and are in the units of the input from its origin.
