@@ -9,34 +9,32 @@
 #include "denoise/sample_patches.h"
 #include "denoise/straighten.h"
 #include "features/mechanical_creases.h"
-#include "mesh/border.h"
+#include "meshgrain/surface.h"
 
 namespace meshgrain {
-
 namespace {
 
 /// How many times longer the creases of a part must be than all that is less sharp, once the noise
 /// is out: the filter makes edges of some of what is smooth, too.
 constexpr double clearly = 2;
 
-/// Whether so many edges are no creases and yet not flat that it may be noise.
-bool may_be_noisy(const Mesh& triangles, const Context& context) {
-  constexpr double not_flat = 10, least_share = 0.15;  // degrees; of the length of all edges
-  const auto length = [&](double degrees) {
-    double sum = 0;
-    for (const SharpEdge& edge : sharp_edges(triangles, degrees, context)) {
-      sum += (triangles.positions[edge.ends[0]] - triangles.positions[edge.ends[1]]).norm();
-    }
-    return sum;
-  };
-  constexpr double all = -1;
-  return length(not_flat) > least_share * length(all);
+/// Whether so many edges are no creases and yet not flat that it may be noise. `edges` are those
+/// that are not flat.
+bool may_be_noisy(const Mesh& triangles, const std::vector<SharpEdge>& edges) {
+  constexpr double least_share = 0.15;  // of the length of all edges
+  double length = 0;
+  for (const auto& [ends, cosine] : edges) {
+    length += (triangles.positions[ends[0]] - triangles.positions[ends[1]]).norm();
+  }
+  const auto sides = static_cast<double>(triangles.faces.corners().size());
+  return length > least_share * edge_lengths(triangles).mean * sides / 2;
 }
 
 /// Some of the surface tells at once that most scans are no part.
 bool is_noisy_part(const Mesh& triangles, const Context& context) {
-  if (!mechanical_creases(triangles, 1, context).empty()) return false;  // creases without noise
-  if (!may_be_noisy(triangles, context)) return false;
+  const std::vector<SharpEdge> edges = sharp_edges(triangles, flat_degrees, context);
+  if (!mechanical_creases(triangles, edges, 1).empty()) return false;  // creases without noise
+  if (!may_be_noisy(triangles, edges)) return false;
   constexpr std::size_t patches = 16, faces_each = 1000;
   Mesh sample = sample_patches(triangles, patches, faces_each, context);
   NormalFilter(sample, NormalFilter::Border::moves, context).run();

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "field/jumps.h"
+#include "util/edge_of.h"
 #include "util/sort_unique.h"
 
 namespace meshgrain {
@@ -231,8 +232,7 @@ Clusters collapse_clusters(const Graph& graph, const OrientationField& orientati
       average_clusters(graph, position, nodes, cluster_of, border, border, kept_count);
 
   const auto clusters_of_edge = [&](Index i, Index j) {
-    const Index a = cluster_of[i], b = cluster_of[j];
-    return std::array<Index, 2>{std::min(a, b), std::max(a, b)};
+    return edge_of(cluster_of[i], cluster_of[j]);
   };
   for (Index i = 0; i < n; ++i) {
     for (Index e = units.offsets[i]; e < units.offsets[i + 1]; ++e) {

@@ -8,6 +8,7 @@
 #include "extract/collect_faces.h"
 #include "extract/face_repair.h"
 #include "extract/line_edges.h"
+#include "util/edge_of.h"
 
 namespace meshgrain {
 namespace {
@@ -15,12 +16,11 @@ namespace {
 std::vector<Index> lines_of_edges(const Extraction& extraction, const PolygonMap& map) {
   std::map<std::array<Index, 2>, Index> lines;
   for (const auto& [a, b, line] : extraction.line_edges) {
-    lines[{std::min(a, b), std::max(a, b)}] = line;
+    lines[edge_of(a, b)] = line;
   }
   std::vector<Index> result(map.halfedges() / 2, no_index);
   for (Index e = 0; e < result.size(); ++e) {
-    const Index a = map.origin(2 * e), b = map.target(2 * e);
-    const auto it = lines.find({std::min(a, b), std::max(a, b)});
+    const auto it = lines.find(edge_of(map.origin(2 * e), map.target(2 * e)));
     if (it != lines.end()) result[e] = it->second;
   }
   return result;

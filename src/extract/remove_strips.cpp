@@ -10,15 +10,12 @@
 
 #include "extract/drop_unused.h"
 #include "extract/line_edges.h"
+#include "util/edge_of.h"
 
 namespace meshgrain {
 namespace {
 
-using Edge = std::pair<Index, Index>;  // the smaller vertex first
-
-Edge edge_of(Index a, Index b) {
-  return {std::min(a, b), std::max(a, b)};
-}
+using Edge = std::array<Index, 2>;
 
 /// A row of quads, with the edges between them and at its ends.
 struct Strip {
@@ -45,7 +42,7 @@ class Strips {
       }
     }
     for (const auto& [edge, sides] : sides_) {
-      for (const Index v : {edge.first, edge.second}) {
+      for (const Index v : edge) {
         ++valence_[v];
         if (sides[1] == no_index) on_border_[v] = 1;
       }
@@ -78,8 +75,8 @@ class Strips {
 
   /// Who stays of the two ends of a rung, and who goes.
   Edge stays_and_goes(const Edge& rung) const {
-    const bool first = hold_[rung.first] >= hold_[rung.second];
-    return first ? rung : Edge{rung.second, rung.first};
+    const bool first = hold_[rung[0]] >= hold_[rung[1]];
+    return first ? rung : Edge{rung[1], rung[0]};
   }
   bool is_held(Index v) const { return hold_[v] != free_vertex; }
 
@@ -205,7 +202,7 @@ void remove(Extraction& extraction, const Strips& strips, const Strip& strip) {
   }
   extraction.line_edges.clear();
   for (const auto& [edge, line] : lines) {
-    extraction.line_edges.push_back({edge.first, edge.second, line});
+    extraction.line_edges.push_back({edge[0], edge[1], line});
   }
   drop_unused(extraction);
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "mesh/splitting.h"
+#include "util/edge_of.h"
 #include "util/triangle.h"
 
 namespace meshgrain {
@@ -20,11 +21,6 @@ using Edge = std::array<Index, 2>;
 /// How near a crossing is to a vertex, along the edge, to become that vertex; and how near an end
 /// may be to a line. Smaller shares would leave needles.
 constexpr double near_vertex = 0.1, near_line = 0.3;
-
-/// The ends of an edge, the smaller first.
-Edge edge_of(Index a, Index b) {
-  return {std::min(a, b), std::max(a, b)};
-}
 
 class Cutting {
  public:

@@ -21,8 +21,8 @@ class FeatureEdges {
 
  private:
   struct Edge {
-    Index low, high, line;
-    auto key() const { return std::array{low, high}; }
+    std::array<Index, 2> ends;
+    Index line;
   };
   std::vector<Edge> edges_;  // sorted
   std::vector<std::uint8_t> hold_;

@@ -4,14 +4,12 @@
 #include <limits>
 #include <numbers>
 
-#include "mesh/border.h"
-
 namespace meshgrain {
 
-std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh, double clearly,
-                                                     const Context& context) {
-  constexpr double sharp = 40, flat = 10;  // degrees
-  const std::vector<SharpEdge> edges = sharp_edges(mesh, flat, context);
+std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh,
+                                                     const std::vector<SharpEdge>& edges,
+                                                     double clearly) {
+  constexpr double sharp = 40;  // degrees
   const auto is_above = [](const SharpEdge& edge, double degrees) {
     return edge.cosine < std::cos(degrees * std::numbers::pi / 180);
   };
@@ -24,7 +22,7 @@ std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh, double cl
     return sum;
   };
   const double creases = length_above(sharp);
-  if (creases <= clearly * (length_above(flat) - creases)) return {};
+  if (creases <= clearly * (length_above(flat_degrees) - creases)) return {};
   // The threshold is where it matters least.
   double threshold = sharp, least = std::numeric_limits<double>::infinity();
   constexpr double lowest = 20, window = 1.25, step = 2;
@@ -39,6 +37,11 @@ std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh, double cl
     if (is_above(edge, threshold)) result.push_back(edge.ends);
   }
   return result;
+}
+
+std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh, double clearly,
+                                                     const Context& context) {
+  return mechanical_creases(mesh, sharp_edges(mesh, flat_degrees, context), clearly);
 }
 
 }  // namespace meshgrain

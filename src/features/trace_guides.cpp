@@ -14,6 +14,7 @@
 #include "meshgrain/error.h"
 #include "meshgrain/statistics.h"
 #include "meshgrain/surface.h"
+#include "util/edge_of.h"
 
 namespace meshgrain {
 namespace {
@@ -143,7 +144,7 @@ bool Tracing::is_past_border(const Point& p, const Bvh::Hit& hit) const {
   if ((off - n * n.dot(off)).norm() < 0.1 * edge_) return false;
   for (std::size_t k = 0; k < 3; ++k) {
     const Index a = face[k], b = face[(k + 1) % 3];
-    if (rim_.count({std::min(a, b), std::max(a, b)}) == 0) continue;
+    if (rim_.count(edge_of(a, b)) == 0) continue;
     const Point along = (corner(k + 1) - corner(k)).normalized();
     const Point to = hit.point - corner(k);
     if ((to - along * along.dot(to)).norm() < 1e-3 * edge_) return true;

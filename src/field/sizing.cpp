@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
-#include <queue>
 #include <utility>
 
 #include "field/bending.h"
+#include "graph/spread.h"
 #include "meshgrain/error.h"
 
 namespace meshgrain {
@@ -138,34 +137,24 @@ EdgeLength relative_edge_lengths(const Hierarchy& hierarchy, const Mesh& surface
 EdgeLength graded(const Graph& graph, const EdgeLength& lengths, double growth,
                   const Context& context) {
   if (lengths.uniform()) return lengths;
-  // Dijkstra's algorithm from all nodes at once, but those that cannot shorten a neighbour wait.
   std::vector<float> result = lengths.values;
-  using Entry = std::pair<float, Index>;
   const auto limit = [&](Index i, Index j) {
     const double distance = (graph.positions[i] - graph.positions[j]).norm();
     return static_cast<float>(result[i] + growth * distance);
   };
-  std::vector<Entry> sources;
+  std::vector<std::pair<float, Index>> sources;  // that can shorten a neighbour
   for (Index i = 0; i < graph.size(); ++i) {
     const auto around = graph.neighbors_of(i);
     if (std::any_of(around.begin(), around.end(), [&](Index j) { return result[j] > limit(i, j); }))
       sources.push_back({result[i], i});
   }
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue(std::greater<>(),
-                                                                       std::move(sources));
-  std::size_t done = 0;
-  while (!queue.empty()) {
-    const auto [length, i] = queue.top();
-    queue.pop();
-    if (length > result[i]) continue;
-    if ((++done & 0xffff) == 0) context.check();
-    for (const Index j : graph.neighbors_of(i)) {
-      const float most = limit(i, j);
-      if (!(most < result[j])) continue;
-      result[j] = most;
-      queue.push({most, j});
-    }
-  }
+  const auto shorten = [&](Index i, Index j) {
+    const float most = limit(i, j);
+    if (!(most < result[j])) return false;
+    result[j] = most;
+    return true;
+  };
+  spread(graph, result, std::move(sources), shorten, context);
   return EdgeLength(std::move(result));
 }
 

@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <limits>
-#include <queue>
 #include <utility>
 
+#include "graph/spread.h"
 #include "util/triangle.h"
 
 namespace meshgrain {
 namespace {
 
-/// The nodes of a graph by their way to the nearest vertex of a mesh (Dijkstra's algorithm).
+/// The nodes of a graph by their way to the nearest vertex of a mesh.
 struct Ways {
   std::vector<float> length;
   std::vector<Index> vertex;  // the nearest
@@ -21,8 +21,7 @@ Ways ways_from_vertices(const Extraction& extraction, const Graph& graph, const 
   const std::size_t n = graph.size();
   Ways ways{std::vector<float>(n, std::numeric_limits<float>::infinity()),
             std::vector<Index>(n, no_index), std::vector<Index>(n, no_index)};
-  using Entry = std::pair<float, Index>;
-  std::vector<Entry> sources;
+  std::vector<std::pair<float, Index>> sources;
   const auto reach = [&](Index node, float length, Index vertex, Index before) {
     if (length >= ways.length[node]) return false;
     ways.length[node] = length;
@@ -35,19 +34,11 @@ Ways ways_from_vertices(const Extraction& extraction, const Graph& graph, const 
     const float length = (extraction.mesh.positions[v] - graph.positions[node]).norm();
     if (reach(node, length, v, no_index)) sources.push_back({length, node});
   }
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue(std::greater<>(),
-                                                                       std::move(sources));
-  std::size_t done = 0;
-  while (!queue.empty()) {
-    const auto [length, i] = queue.top();
-    queue.pop();
-    if (length > ways.length[i]) continue;
-    if ((++done & 0xffff) == 0) context.check();
-    for (const Index j : graph.neighbors_of(i)) {
-      const float farther = length + (graph.positions[j] - graph.positions[i]).norm();
-      if (reach(j, farther, ways.vertex[i], i)) queue.push({farther, j});
-    }
-  }
+  const auto go_on = [&](Index i, Index j) {
+    const float farther = ways.length[i] + (graph.positions[j] - graph.positions[i]).norm();
+    return reach(j, farther, ways.vertex[i], i);
+  };
+  spread(graph, ways.length, std::move(sources), go_on, context);
   return ways;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "finish/crossings.h"
+#include "finish/least_sine.h"
 
 namespace meshgrain {
 namespace {
@@ -60,22 +61,17 @@ class Lift {
   const Placement& placement_;
 };
 
-/// The least sine of a face's corners, seen along its normal.
-float least_sine(std::span<const Index> face, const std::vector<Vec3>& positions) {
+/// The least sine of a face's corners, seen along the mean of their normals.
+float worst_corner(std::span<const Index> face, const std::vector<Vec3>& positions) {
   const std::size_t n = face.size();
-  const auto cross_at = [&](std::size_t k) {
-    const Vec3& p = positions[face[k]];
-    const Vec3 next = positions[face[(k + 1) % n]] - p, last = positions[face[(k + n - 1) % n]] - p;
-    const float lengths = next.norm() * last.norm();
-    return lengths > 0 ? Vec3(next.cross(last) / lengths) : Vec3(Vec3::Zero());
-  };
   Vec3 normal = Vec3::Zero();
-  for (std::size_t k = 0; k < n; ++k) normal += cross_at(k);
-  if (!(normal.norm() > 0)) return -1;
-  normal.normalize();
-  float least = 1;
-  for (std::size_t k = 0; k < n; ++k) least = std::min(least, cross_at(k).dot(normal));
-  return least;
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vec3& p = positions[face[k]];
+    const Vec3 a = positions[face[(k + 1) % n]] - p, b = positions[face[(k + n - 1) % n]] - p;
+    if (const float lengths = a.norm() * b.norm(); lengths > 0) normal += a.cross(b) / lengths;
+  }
+  const float length = normal.norm();
+  return length > 0 ? least_sine(face, positions, normal / length) : -1;
 }
 
 }  // namespace
@@ -107,8 +103,8 @@ void lift_vertices(Extraction& extraction, const VertexFaces& around, const Plac
     changed = false;
     for (Index f = 0; f < mesh.faces.size(); ++f) {
       const auto face = std::as_const(mesh.faces)[f];
-      const float sine = least_sine(face, mesh.positions);
-      if (sine < good && sine < least_sine(face, before)) changed = put_back(f) || changed;
+      const float sine = worst_corner(face, mesh.positions);
+      if (sine < good && sine < worst_corner(face, before)) changed = put_back(f) || changed;
     }
     for (const auto& [f, g] : find_crossings(mesh, context)) {
       changed = put_back(f) || changed;

@@ -9,6 +9,7 @@
 
 #include "field/rosy.h"
 #include "finish/crossings.h"
+#include "finish/least_sine.h"
 
 namespace meshgrain {
 namespace {
@@ -24,18 +25,11 @@ Vec3 area_vector(std::span<const Index> face, const std::vector<Vec3>& positions
 
 float face_quality(std::span<const Index> face, const std::vector<Vec3>& positions,
                    const Vec3& upward) {
-  const std::size_t n = face.size();
   Vec3 normal = area_vector(face, positions);
   const float length = normal.norm();
   if (!(length > 0)) return -1;
   normal /= length;
-  float least = 1;
-  for (std::size_t k = 0; k < n; ++k) {
-    const Vec3& p = positions[face[k]];
-    const Vec3 a = positions[face[(k + 1) % n]] - p, b = positions[face[(k + n - 1) % n]] - p;
-    const float lengths = a.norm() * b.norm();
-    least = std::min(least, lengths > 0 ? normal.dot(a.cross(b)) / lengths : -1.0f);
-  }
+  const float least = least_sine(face, positions, normal);
   const float towards = normal.dot(upward);
   return towards < 0 ? std::min(least, 0.0f) - 1 + towards : least;
 }

@@ -60,8 +60,13 @@ class Reader {
   void mark_material_borders() {
     if (materials_.size() < 2) return;
     std::vector<Index> material(mesh_.faces.size(), 0);
-    for (const auto& [face, number] : uses_) {
-      std::fill(material.begin() + static_cast<std::ptrdiff_t>(face), material.end(), number);
+    const auto begin = material.begin();
+    for (std::size_t use = 0; use < uses_.size(); ++use) {
+      const auto from = static_cast<std::ptrdiff_t>(uses_[use].first);
+      const bool is_last = use + 1 == uses_.size();
+      const auto to =
+          is_last ? material.end() : begin + static_cast<std::ptrdiff_t>(uses_[use + 1].first);
+      std::fill(begin + from, to, uses_[use].second);
     }
     const auto parts_two = [&](const InnerEdge& edge) {
       return material[edge.left] != material[edge.right];

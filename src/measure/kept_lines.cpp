@@ -19,10 +19,10 @@ constexpr double near = 0.1;  // edges of the output
 /// The share of the length of `lines` that is near an edge of `others` and along it.
 double followed(const Mesh& input, const Edges& lines, const Mesh& output, const Edges& others,
                 double edge) {
+  if (others.empty()) return 0;
   Mesh segments;  // triangles without area
   segments.positions = output.positions;
   for (const auto& [a, b] : others) segments.faces.push_back({a, b, b});
-  if (others.empty()) return 0;
   const Bvh tree(segments);
   const Eigen::Vector3d shift = input.origin - output.origin;
   double length = 0, kept = 0;
@@ -41,7 +41,7 @@ double followed(const Mesh& input, const Edges& lines, const Mesh& output, const
       if (std::abs(along.dot(other)) > cos20 * along.norm() * other.norm()) kept += step;
     }
   }
-  return kept / length;
+  return length > 0 ? kept / length : 1;
 }
 
 /// Where creases meet, or turn by more than 40 degrees.

@@ -11,6 +11,7 @@
 #include "mesh/duplicates.h"
 #include "mesh/marks.h"
 #include "meshgrain/surface.h"
+#include "util/edge_of.h"
 #include "util/hash.h"
 #include "util/sort_unique.h"
 #include "util/union_find.h"
@@ -81,8 +82,7 @@ std::size_t drop_loose_marks(Mesh& mesh) {
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     const auto face = std::as_const(mesh.faces)[f];
     for (std::size_t k = 0; k < face.size(); ++k) {
-      const auto [low, high] = std::minmax(face[k], face[k + 1 == face.size() ? 0 : k + 1]);
-      const std::array edge{low, high};
+      const auto edge = edge_of(face[k], face[k + 1 == face.size() ? 0 : k + 1]);
       if (std::binary_search(marks.begin(), marks.end(), edge)) found.push_back(edge);
     }
   }

@@ -2,14 +2,9 @@
 
 #include <algorithm>
 
+#include "util/edge_of.h"
+
 namespace meshgrain {
-namespace {
-
-std::array<Index, 2> edge_of(Index a, Index b) {
-  return {std::min(a, b), std::max(a, b)};
-}
-
-}  // namespace
 
 Splitting::Splitting(Mesh& mesh)
     : mesh_(mesh), around_(vertex_faces(mesh)), faces_(mesh.faces.size()) {

@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "denoise/denoise.h"
 #include "extract/reduce_faces.h"
 #include "extract/remove_strips.h"
 #include "field/transfer.h"
@@ -17,6 +16,7 @@
 #include "meshgrain/surface.h"
 #include "meshgrain/triangulate.h"
 #include "remesh/notes.h"
+#include "remesh/take_out_noise.h"
 
 namespace meshgrain {
 namespace {
@@ -62,12 +62,10 @@ void Pipeline::clean_up(Mesh input) {
 }
 
 void Pipeline::sharpen() {
-  if (is_cloud_ || !nodes_are_vertices_) return;
-  if (options_.features.creases != Creases::automatic) return;
+  if (is_cloud_) return;
   stage_("noise", [&] {
     const double side = target_.face_side(surface_area(surface_));
-    is_sharpened_ = sharpen_noisy_part(surface_, side, context_);
-    if (is_sharpened_) result_.report.notes.push_back(sharpened_note);
+    is_sharpened_ = take_out_noise(surface_, options_, side, result_.report.notes, context_);
   });
 }
 

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <utility>
 
-#include "denoise/denoise.h"
 #include "meshgrain/clean.h"
 #include "meshgrain/error.h"
 #include "meshgrain/surface.h"
 #include "meshgrain/triangulate.h"
 #include "remesh/notes.h"
+#include "remesh/take_out_noise.h"
 #include "remesh/target.h"
 #include "symmetry/fold_guides.h"
 
@@ -59,12 +59,9 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const Context& 
   if (!planes.empty()) {
     input = triangulate(input);
     // Before the cut, whose border has to stay where it is.
-    if (options.features.creases == Creases::automatic) {
-      const double side = Target(options, vertices, 1).face_side(surface_area(input));
-      if (sharpen_noisy_part(input, side, context)) {
-        notes.push_back(sharpened_note);
-        options.features.creases = Creases::marked;
-      }
+    const double side = Target(options, vertices, 1).face_side(surface_area(input));
+    if (take_out_noise(input, options, side, notes, context)) {
+      options.features.creases = Creases::marked;
     }
   }
   for (const MirrorPlane& plane : planes) {
