@@ -8,10 +8,12 @@
 #include <vector>
 
 #include "finish/crossings.h"
+#include "finish/fit_to_rails.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
 #include "meshgrain/statistics.h"
 #include "same_topology.h"
+#include "util/triangle.h"
 
 namespace meshgrain {
 namespace {
@@ -117,6 +119,48 @@ TEST(Finish, ThinWallsDoNotPassThroughEachOther) {
       made::expect_same_topology(mesh_statistics(result), mesh_statistics(bowl));
       EXPECT_TRUE(find_crossings(result, Context()).empty());
     }
+  }
+}
+
+/// A row of quads whose lower side follows a line with spikes.
+TEST(Finish, EdgesCutOffLessOfARaggedLine) {
+  FeatureLines line;
+  line.positions = {{0, 0, 0},    {0.9f, 0, 0},    {1.3f, 0.7f, 0}, {1.7f, 0, 0},
+                    {3.2f, 0, 0}, {3.6f, 0.7f, 0}, {4, 0, 0},       {5, 0, 0}};
+  for (Index k = 0; k < line.positions.size(); ++k) line.vertices.push_back(k);
+  line.starts.push_back(static_cast<Index>(line.positions.size()));
+  line.corners = {0, 7};
+  Extraction row;
+  const std::vector<Vec3> lower = {line.positions[0], {1, 0.175f, 0}, {2, 0, 0},
+                                   {3, 0, 0},         {4, 0, 0},      line.positions[7]};
+  row.nodes = {0, 1, 3, 3, 6, 7};
+  row.corners = {0, 5};
+  for (Index k = 0; k < lower.size(); ++k) {
+    row.mesh.positions.push_back(lower[k]);
+    if (k > 0) row.line_edges.push_back({k - 1, k, 0});
+  }
+  const auto farthest_spike = [&] {
+    float result = 0;
+    for (const Index spike : {2, 5}) {
+      float nearest = 1;
+      for (const auto& [a, b, l] : row.line_edges) {
+        const Vec3& p = line.positions[spike];
+        const auto q =
+            closest_point_on_segment<Vec3>(p, row.mesh.positions[a], row.mesh.positions[b]);
+        nearest = std::min(nearest, (q - p).norm());
+      }
+      result = std::max(result, nearest);
+    }
+    return result;
+  };
+  EXPECT_GT(farthest_spike(), 0.5f);
+  Rails rails(row, line);
+  fit_to_rails(row.mesh, row.line_edges, rails);
+  EXPECT_LT(farthest_spike(), 0.35f);
+  EXPECT_EQ(row.mesh.positions[0], lower[0]);
+  EXPECT_EQ(row.mesh.positions[5], lower[5]);
+  for (Index k = 0; k + 1 < lower.size(); ++k) {
+    EXPECT_LT(row.mesh.positions[k].x(), row.mesh.positions[k + 1].x());
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "finish/fit_to_rails.h"
 #include "finish/projector.h"
 #include "finish/rails.h"
 #include "meshgrain/extract.h"
@@ -27,7 +28,8 @@ class Placement {
   /// `end`, or as near as it then is.
   void tether(std::size_t v, const Vec3& p, Index node, const Vec3& end, float radius);
 
-  void fit_lines() { rails_.fit(extraction_.mesh, extraction_.line_edges); }
+  /// Slides vertices along lines to where the edges between them cut off less.
+  void fit_lines() { fit_to_rails(extraction_.mesh, extraction_.line_edges, rails_); }
 
   /// Lets v leave the line that holds it. Returns whether there was one.
   bool release(std::size_t v) { return rails_.release(v, extraction_.nodes[v]); }

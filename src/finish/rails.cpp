@@ -1,7 +1,6 @@
 #include "finish/rails.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "mesh/border.h"
@@ -13,12 +12,6 @@ Rails::Rails(const Extraction& extraction, const FeatureLines& lines)
     : lines_(lines),
       segment_(extraction.mesh.positions.size(), no_index),
       line_(extraction.mesh.positions.size(), no_index) {
-  ways_.resize(lines.vertices.size(), 0);
-  for (Index line = 0; line < lines.size(); ++line) {
-    for (Index k = lines.begin(line) + 1; k < lines.end(line); ++k) {
-      ways_[k] = ways_[k - 1] + (lines.positions[k] - lines.positions[k - 1]).norm();
-    }
-  }
   // Where each vertex of the surface is among those of the lines: of a corner, one such place.
   std::vector<Index> entry_of;
   for (Index k = 0; k < lines.vertices.size(); ++k) {
@@ -105,110 +98,6 @@ Vec3 Rails::project(const Vec3& p, std::size_t v) {
     }
   }
   return best;
-}
-
-double Rails::way(Index v, const Mesh& mesh, Index line, double from) const {
-  const Index begin = lines_.begin(line), last = lines_.end(line) - 1;
-  const double length = ways_[last];
-  if (is_fixed(v)) {
-    const Vec3& p = mesh.positions[v];
-    const float to_begin = (p - lines_.positions[begin]).norm();
-    const float to_end = (p - lines_.positions[last]).norm();
-    if (to_begin == to_end) return from < length / 2 ? 0 : length;
-    return to_begin < to_end ? 0 : length;
-  }
-  const double result =
-      ways_[segment_[v]] + (mesh.positions[v] - lines_.positions[segment_[v]]).norm();
-  return lines_.is_closed(line) ? from + std::remainder(result - from, length) : result;
-}
-
-Vec3 Rails::at(Index line, double way, Index& segment) const {
-  const Index begin = lines_.begin(line), last = lines_.end(line) - 1;
-  const double length = ways_[last];
-  if (lines_.is_closed(line)) way -= length * std::floor(way / length);
-  const auto above = std::upper_bound(ways_.begin() + begin + 1, ways_.begin() + last, way);
-  segment = static_cast<Index>(above - ways_.begin()) - 1;
-  const double share =
-      (way - ways_[segment]) / std::max(ways_[segment + 1] - ways_[segment], 1e-30);
-  const Vec3 &a = lines_.positions[segment], &b = lines_.positions[segment + 1];
-  return a + static_cast<float>(std::clamp(share, 0.0, 1.0)) * (b - a);
-}
-
-float Rails::cut_off(Index line, const std::array<double, 3>& ways,
-                     const std::array<Vec3, 3>& points) const {
-  float farthest = 0;
-  Index segment = 0;
-  at(line, ways[0], segment);
-  const Index begin = lines_.begin(line), last = lines_.end(line) - 1;
-  const double length = ways_[last];
-  const double rounds = lines_.is_closed(line) ? (ways[0] - ways_[segment]) / length : 0;
-  double turn = std::round(rounds) * length;
-  for (Index k = segment + 1;; ++k) {
-    if (k > last) {
-      k = begin;
-      turn += length;
-    }
-    const double way = ways_[k] + turn;
-    if (way >= ways[2] || way > ways[0] + length) return farthest;
-    const int half = way < ways[1] ? 0 : 1;
-    const Vec3& p = lines_.positions[k];
-    const Vec3 q = closest_point_on_segment<Vec3>(p, points[half], points[half + 1]);
-    farthest = std::max(farthest, (p - q).norm());
-  }
-}
-
-void Rails::fit(Mesh& mesh, std::span<const LineEdge> edges) {
-  std::vector<std::array<Index, 2>> beside(segment_.size(), {no_index, no_index});
-  double total = 0;
-  for (const auto& [a, b, line] : edges) {
-    total += (mesh.positions[a] - mesh.positions[b]).norm();
-    for (const auto& [v, w] : {std::pair(a, b), std::pair(b, a)}) {
-      if (!is_free(v) && !is_fixed(v)) beside[v][beside[v][0] != no_index] = w;
-    }
-  }
-  const auto edge =
-      static_cast<float>(total / static_cast<double>(std::max<std::size_t>(edges.size(), 1)));
-  const float tolerated = 0.06f * edge;
-  std::vector<Index> between;  // two others of their line
-  for (Index v = 0; v < beside.size(); ++v) {
-    if (beside[v][1] != no_index && !is_free(beside[v][0]) && !is_free(beside[v][1])) {
-      between.push_back(v);
-    }
-  }
-  constexpr int sweeps = 3;
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
-    for (const Index v : between) fit_between(v, beside[v], tolerated, mesh);
-  }
-}
-
-void Rails::fit_between(Index v, std::array<Index, 2> ends, float tolerated, Mesh& mesh) {
-  const Index line = line_[v];
-  const double own = way(v, mesh, line, 0);
-  std::array<double, 2> ways{way(ends[0], mesh, line, own), way(ends[1], mesh, line, own)};
-  if (ways[0] > ways[1]) {
-    std::swap(ends[0], ends[1]);
-    std::swap(ways[0], ways[1]);
-  }
-  if (!(ways[0] < own && own < ways[1])) return;
-  const auto cost = [&](double to, const Vec3& p) {
-    return cut_off(line, {ways[0], to, ways[1]},
-                   {mesh.positions[ends[0]], p, mesh.positions[ends[1]]});
-  };
-  float least = cost(own, mesh.positions[v]);
-  if (least < tolerated) return;
-  least -= tolerated / 3;  // what it must gain
-  Vec3 best = mesh.positions[v];
-  for (const double step : {-0.3, -0.2, -0.1, -0.05, 0.05, 0.1, 0.2, 0.3}) {
-    const double to = own + step * (step < 0 ? own - ways[0] : ways[1] - own);
-    Index segment = 0;
-    const Vec3 p = at(line, to, segment);
-    const float c = cost(to, p);
-    if (c >= least) continue;
-    least = c;
-    best = p;
-    segment_[v] = segment;
-  }
-  mesh.positions[v] = best;
 }
 
 bool Rails::release(std::size_t v, Index& node) {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-#include <span>
 #include <vector>
 
 #include "meshgrain/extract.h"
@@ -23,16 +21,14 @@ class Rails {
   /// The place on its line nearest to `p` that a vertex has; it remembers where that is.
   Vec3 project(const Vec3& p, std::size_t v);
 
-  /// Slides vertices a little along lines that turn sharply between them, to where the edges cut
-  /// off least: ragged borders of scans. `edges` are those that follow lines.
-  void fit(Mesh& mesh, std::span<const LineEdge> edges);
-
   /// Lets a vertex go. Returns whether it was on a line; `node` then gets a vertex there.
   bool release(std::size_t v, Index& node);
 
-  /// Where on its line a vertex is, to go back to.
+  /// Where on its line a vertex is, to go back to: the segment, by the place in lines().vertices
+  /// where that begins.
   Index place(std::size_t v) const { return segment_[v]; }
   void set_place(std::size_t v, Index place) { segment_[v] = place; }
+  const FeatureLines& lines() const { return lines_; }
   /// A vertex of the surface there, or no_index.
   Index node(Index place) const {
     return place < lines_.vertices.size() ? lines_.vertices[place] : no_index;
@@ -41,24 +37,11 @@ class Rails {
  private:
   static constexpr Index stays = no_index - 1;
 
-  /// How far along its line a vertex is, in units of length. For corners: along `line`, at the end
-  /// that is nearest to `from`.
-  double way(Index v, const Mesh& mesh, Index line, double from) const;
-  /// The point so far along a line, and its segment.
-  Vec3 at(Index line, double way, Index& segment) const;
-  /// How far the line lies from the chords between three of its points, at most.
-  float cut_off(Index line, const std::array<double, 3>& ways,
-                const std::array<Vec3, 3>& points) const;
-
-  void fit_between(Index v, std::array<Index, 2> ends, float tolerated, Mesh& mesh);
-
   /// `entry`: the place of v's node in lines_.vertices, or no_index; `p`: where v is.
   void put_on_line(Index v, Index line, Index entry, const Vec3& p);
 
   const FeatureLines& lines_;
-  std::vector<double> ways_;  // of lines_.vertices, from the beginning of their lines
-  // For each vertex the segment that it is on, by the place in lines_.vertices where that begins;
-  // `stays`, or no_index.
+  // For each vertex its place; `stays`, or no_index.
   std::vector<Index> segment_;
   std::vector<Index> line_;
 };
