@@ -1,6 +1,7 @@
 #include "extract/cancel_singularities.h"
 
 #include <algorithm>
+#include <limits>
 #include <queue>
 #include <tuple>
 
@@ -17,6 +18,7 @@ class Cancelling {
       : lattice_(lattice), map_(lattice.map), limit_(cost), posy_(lattice.posy) {
     const std::size_t states = map_.halfedges() * static_cast<std::size_t>(posy_);
     visits_.resize(states);
+    costs_.resize(2 * states, unknown);
     weigh_lines();
   }
 
@@ -37,7 +39,11 @@ class Cancelling {
         queue.push({path.cost, start.h});
         continue;
       }
-      for (const Step& step : path.steps) lattice_.set_jump(step.h, left(step.h, step.unit));
+      for (const Step& step : path.steps) {
+        lattice_.set_jump(step.h, left(step.h, step.unit));
+        forget_costs(step.h);
+        forget_costs(PolygonMap::twin(step.h));
+      }
       queue.push({0, start.h});  // if anything is left
     }
   }
@@ -64,18 +70,19 @@ class Cancelling {
   };
   struct Visit {
     double cost = 0;
-    std::size_t parent = 0;
+    std::uint32_t parent = 0;             // the number of a state
     std::uint32_t reached = 0, done = 0;  // the search in which this was so
   };
   struct Entry {
     double cost;
-    std::size_t state;
+    std::uint32_t state;
     bool operator<(const Entry& o) const {
       return std::tie(cost, state) > std::tie(o.cost, o.state);
     }
   };
 
-  static constexpr std::size_t none = ~std::size_t{0};
+  static constexpr std::uint32_t none = ~std::uint32_t{0};
+  static constexpr double unknown = -1, forbidden = std::numeric_limits<double>::infinity();
   static constexpr double least_step = 0.05;  // so that paths are no longer than they must be
 
   /// What changes the length of a feature line must fit in between its ends: it costs more on a
@@ -95,10 +102,10 @@ class Cancelling {
     return !triangle.is_cone() && !triangle.is_plane();
   }
 
-  std::size_t number(const State& s) const {
-    return static_cast<std::size_t>(s.h) * posy_ + s.unit % posy_;
+  std::uint32_t number(const State& s) const {
+    return s.h * static_cast<std::uint32_t>(posy_) + static_cast<std::uint32_t>(s.unit % posy_);
   }
-  State state(std::size_t number) const {
+  State state(std::uint32_t number) const {
     return {static_cast<Index>(number / posy_), static_cast<int>(number % posy_)};
   }
 
@@ -152,8 +159,8 @@ class Cancelling {
     return std::max(0.0, badness(triangle) - before);
   }
 
-  void visit(double cost, const State& to, std::size_t parent) {
-    const std::size_t id = number(to);
+  void visit(double cost, const State& to, std::uint32_t parent) {
+    const std::uint32_t id = number(to);
     Visit& visit = visits_[id];
     if (visit.reached == search_ && visit.cost <= cost) return;
     visit = {cost, parent, search_, visit.done};
@@ -186,7 +193,7 @@ class Cancelling {
     const double here = size == 1 ? 2 : 1;
     Path best;
     best.cost = limit_;
-    std::size_t last = none;
+    std::uint32_t last = none;
     while (!queue_.empty()) {
       const Entry entry = queue_.top();
       queue_.pop();
@@ -207,7 +214,7 @@ class Cancelling {
       best.cost = cost;
       last = entry.state;
     }
-    for (std::size_t s = last; s != none; s = visits_[s].parent) {
+    for (std::uint32_t s = last; s != none; s = visits_[s].parent) {
       const State in = state(s);
       const Index h = PolygonMap::twin(in.h);
       best.steps.push_back({h, (in.unit + posy_ - lattice_.jump(h).rotation) % posy_});
@@ -242,11 +249,24 @@ class Cancelling {
     int carried = beyond(in.h, in.unit);
     Index h = map_.next(in.h);
     for (int side = 0; side < 2; ++side) {
-      const double cost = entry.cost + step_cost(h, carried, passing(in, h, carried));
-      const bool may = may_carry(h, carried);
+      // Of all that a search asks for this is the most work, and the next searches ask again.
+      double& cost = costs_[2 * std::size_t{entry.state} + static_cast<std::size_t>(side)];
+      if (cost == unknown) cost = passing_cost(in, h, carried);
       carried = beyond(h, carried);
-      if (may) visit(cost, {PolygonMap::twin(h), carried}, entry.state);
+      if (cost != forbidden) visit(entry.cost + cost, {PolygonMap::twin(h), carried}, entry.state);
       h = map_.next(h);
+    }
+  }
+  double passing_cost(const State& in, Index h, int carried) const {
+    if (!may_carry(h, carried)) return forbidden;
+    return step_cost(h, carried, passing(in, h, carried));
+  }
+  /// What the triangle left of h has changed.
+  void forget_costs(Index h) {
+    if (lattice_.holes[h]) return;
+    for (int corner = 0; corner < 3; ++corner, h = map_.next(h)) {
+      const std::size_t first = 2 * std::size_t{number({h, 0})};
+      std::fill_n(costs_.begin() + static_cast<std::ptrdiff_t>(first), 2 * posy_, unknown);
     }
   }
 
@@ -254,7 +274,8 @@ class Cancelling {
   const PolygonMap& map_;
   double limit_;
   int posy_;
-  std::vector<Visit> visits_;
+  std::vector<Visit> visits_;  // of each state
+  std::vector<double> costs_;  // of each state, for passing on to the left and to the right
   std::vector<double> line_weight_;
   std::priority_queue<Entry> queue_;
   std::uint32_t search_ = 0;

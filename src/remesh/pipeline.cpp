@@ -193,7 +193,7 @@ void Pipeline::position_and_extract() {
     lengths_ = graded(graph(), scaled(lengths_, factor), growth(), context_);
   }
   const double ratio = target_.count_ratio(extraction_.mesh);
-  if (ratio > 1 + tolerance && ratio < 1.2) {
+  if (ratio > 1 + tolerance && ratio < 1.35) {
     stage_("extraction", [&] { take_away_faces(tolerance); });
   }
   if (extraction_.mesh.faces.empty()) {
