@@ -49,20 +49,20 @@ Mesh keep(Mesh mesh, const std::function<bool(const Vec3&)>& wanted) {
   return mesh;
 }
 
-/// The wall of a cylinder of radius and height 1, with so many edges around below and above.
-Mesh tube(std::size_t below, std::size_t above) {
+/// The wall of a cylinder of radius 1, with so many edges around below and above.
+Mesh tube(std::size_t below, std::size_t above, float height = 0.5f) {
   Mesh mesh;
-  const auto add_ring = [&](std::size_t count, float height) {
+  const auto add_ring = [&](std::size_t count, float z) {
     const auto first = static_cast<Index>(mesh.positions.size());
     for (std::size_t k = 0; k < count; ++k) {
       const double angle =
           2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(count);
       mesh.positions.push_back(
-          {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), height});
+          {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), z});
     }
     return first;
   };
-  const Index low = add_ring(below, 0), high = add_ring(above, 1);
+  const Index low = add_ring(below, 0), high = add_ring(above, height);
   std::size_t i = 0, j = 0;
   while (i < below || j < above) {
     const auto a = static_cast<Index>(low + i % below), b = static_cast<Index>(high + j % above);
@@ -104,7 +104,8 @@ TEST(LockBorders, TheBorderIsTheInputsBitForBit) {
   for (const Case& shape : cases()) {
     for (const OutputFaces faces :
          {OutputFaces::quads, OutputFaces::quad_dominant, OutputFaces::triangles}) {
-      for (const std::size_t count : {500, 3000}) {
+      const std::size_t many = faces == OutputFaces::quads ? 3000 : 1500;
+      for (const std::size_t count : {std::size_t{500}, many}) {
         SCOPED_TRACE(shape.name + " " + std::to_string(static_cast<int>(faces)) + " " +
                      std::to_string(count));
         RemeshOptions options;
@@ -122,8 +123,9 @@ TEST(LockBorders, TheBorderIsTheInputsBitForBit) {
           EXPECT_EQ(after.quads, after.faces);
         }
         // 150 vertices on a border leave no room for 500 faces in all.
-        if (count == 3000) {
-          EXPECT_NEAR(static_cast<double>(after.faces), 3000, 45);
+        if (count == many) {
+          const auto wanted = static_cast<double>(count);
+          EXPECT_NEAR(static_cast<double>(after.faces), wanted, 0.015 * wanted);
         }
       }
     }
@@ -133,17 +135,17 @@ TEST(LockBorders, TheBorderIsTheInputsBitForBit) {
 /// Borders far finer and far coarser than the faces, and the smallest that there are.
 TEST(LockBorders, AnyNumberOfVerticesIsMet) {
   std::vector<Case> shapes;
-  shapes.push_back({"fine", sample_shape("plate", 3), true});
+  shapes.push_back({"fine", sample_shape("plate"), true});
   shapes.push_back({"coarse", sample_shape("plate", 0.2), true});
-  shapes.push_back({"prism", tube(3, 3), false});
-  shapes.push_back({"four and five", tube(4, 5), false});
+  shapes.push_back({"prism", tube(3, 3, 2), false});
+  shapes.push_back({"four and five", tube(4, 5, 2), false});
   shapes.push_back({"a triangle", Mesh(), false});
   shapes.back().mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   shapes.back().mesh.faces.push_back({0, 1, 2});
   for (const Case& shape : shapes) {
     for (const OutputFaces faces :
          {OutputFaces::quads, OutputFaces::quad_dominant, OutputFaces::triangles}) {
-      for (const std::size_t count : {20, 400}) {
+      for (const std::size_t count : {20, 300}) {
         SCOPED_TRACE(shape.name + " " + std::to_string(static_cast<int>(faces)) + " " +
                      std::to_string(count));
         RemeshOptions options;

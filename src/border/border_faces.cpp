@@ -107,7 +107,8 @@ std::vector<std::vector<std::size_t>> BorderFaces::best_parts(
     const std::vector<Index>& orbit) const {
   constexpr std::size_t few = 14;
   PolygonParts parts;
-  parts.most_corners = kind_ == Kind::triangles ? 3 : orbit.size() <= few ? 5 : 4;
+  const bool pentagons = kind_ == Kind::quads && orbit.size() <= few;
+  parts.most_corners = kind_ == Kind::triangles ? 3 : pentagons ? 5 : 4;
   parts.cost = [&](std::span<const std::size_t> part) { return part_cost(orbit, part); };
   parts.may_join = [&](std::size_t i, std::size_t j) {
     return !map_.adjacent(map_.origin(orbit[i]), map_.origin(orbit[j]));
@@ -115,13 +116,24 @@ std::vector<std::vector<std::size_t>> BorderFaces::best_parts(
   return split_polygon(orbit.size(), parts);
 }
 
-bool BorderFaces::touches_border(const std::vector<Index>& orbit) const {
-  return std::ranges::any_of(
-      orbit, [&](Index h) { return mesh_.clusters.on_border[map_.origin(h)] != 0; });
+void BorderFaces::find_near() {
+  const std::vector<std::uint8_t>& on_border = mesh_.clusters.on_border;
+  near_ = on_border;
+  std::vector<Index> orbit;
+  for (Index h = 0; h < map_.halfedges(); ++h) {
+    if (map_.removed(h) || mesh_.holes[h] || !on_border[map_.origin(h)]) continue;
+    map_.orbit(h, orbit);
+    for (const Index g : orbit) near_[map_.origin(g)] = 1;
+  }
+}
+
+bool BorderFaces::is_near(const std::vector<Index>& orbit) const {
+  return std::ranges::any_of(orbit, [&](Index h) { return near_[map_.origin(h)] != 0; });
 }
 
 void BorderFaces::improve() {
   constexpr int sweeps = 6;
+  find_near();
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     bool any = false;
     for (Index h = 0; h < map_.halfedges(); h += 2) {
@@ -141,14 +153,14 @@ bool BorderFaces::divide_anew(Index h) {
   map_.orbit(h, left);
   map_.orbit(t, right);
   if (left.size() + right.size() > most_corners + 2) return false;
-  if (!touches_border(left) && !touches_border(right)) return false;
+  if (!is_near(left) && !is_near(right)) return false;
   const auto whole = [&](const std::vector<Index>& orbit) {
     std::vector<std::size_t> all(orbit.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
     return part_cost(orbit, all);
   };
   const double before = whole(left) + whole(right);
-  if (before < by_far) return false;
+  if (before < by_far || !std::isfinite(before)) return false;
   std::vector<Index> both(left.begin() + 1, left.end());
   both.insert(both.end(), right.begin() + 1, right.end());
   std::vector<Index> corners;
@@ -222,6 +234,7 @@ double BorderFaces::part_cost(const std::vector<Index>& orbit,
   for (std::size_t k = 0; k < n; ++k) normal += mesh_.clusters.normals[vertex(k)];
   normal.normalize();
   const double regular = pi * static_cast<double>(n - 2) / static_cast<double>(n);
+  if (kind_ == Kind::only_quads && n != 4) return std::numeric_limits<double>::infinity();
   double cost = kind_ == Kind::quads && n != 4 ? 0.5 : 0;
   for (std::size_t k = 0; k < n; ++k) {
     const double a =

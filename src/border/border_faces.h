@@ -10,14 +10,14 @@ namespace meshgrain {
 /// Gives the faces along a border whose vertices stay the edges that they need.
 class BorderFaces {
  public:
-  enum class Kind { triangles, quads };
+  enum class Kind { triangles, quads, only_quads };
 
   BorderFaces(ExtractionMap& mesh, Kind kind) : mesh_(mesh), map_(mesh.map), kind_(kind) {}
 
   /// Splits faces that have too many corners, or a straight angle that nothing can bend.
   void mend();
 
-  /// Divides pairs of neighbouring faces along the border anew where that makes better ones.
+  /// Divides pairs of neighbouring faces near the border anew where that makes better ones.
   void improve();
 
  private:
@@ -25,7 +25,8 @@ class BorderFaces {
   bool needs_split(const std::vector<Index>& orbit) const;
   Index open(Index h);
   void split(Index h);
-  bool touches_border(const std::vector<Index>& orbit) const;
+  void find_near();
+  bool is_near(const std::vector<Index>& orbit) const;
   bool divide_anew(Index h);
   std::vector<std::vector<std::size_t>> best_parts(const std::vector<Index>& orbit) const;
   void cut_in_two(const std::vector<Index>& orbit);
@@ -39,6 +40,7 @@ class BorderFaces {
   ExtractionMap& mesh_;
   PolygonMap& map_;
   Kind kind_;
+  std::vector<std::uint8_t> near_;  // of each vertex, whether it has a face on the border
 };
 
 }  // namespace meshgrain

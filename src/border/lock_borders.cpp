@@ -344,6 +344,16 @@ class BorderLock {
   std::vector<Rim> rims_;
 };
 
+/// The mesh of a map, and for each vertex of the map that of the mesh.
+std::vector<Index> collect(ExtractionMap& mesh, Extraction& extraction) {
+  constexpr int any_posy = 4;
+  FaceRepair repair(mesh.map, mesh.clusters, any_posy, std::move(mesh.holes),
+                    std::move(mesh.lines));
+  std::vector<Index> vertex;
+  extraction = collect_faces(mesh.map, repair, mesh.clusters, vertex);
+  return vertex;
+}
+
 }  // namespace
 
 void lock_borders(Extraction& extraction, const BorderLoops& borders, const Graph& graph,
@@ -352,13 +362,16 @@ void lock_borders(Extraction& extraction, const BorderLoops& borders, const Grap
   ExtractionMap mesh(extraction, context);
   BorderLock lock(mesh, borders, graph, faces);
   lock.run();
-  const int posy = faces == OutputFaces::triangles ? 6 : 4;
-  FaceRepair repair(mesh.map, mesh.clusters, posy, std::move(mesh.holes), std::move(mesh.lines));
-  std::vector<Index> vertex;
-  extraction = collect_faces(mesh.map, repair, mesh.clusters, vertex);
+  const std::vector<Index> vertex = collect(mesh, extraction);
   for (const Collar& collar : lock.collars(vertex)) {
-    add_collar(extraction, collar, graph, posy == 4);
+    add_collar(extraction, collar, graph, faces != OutputFaces::triangles);
   }
+}
+
+void improve_border_quads(Extraction& extraction, const Context& context) {
+  ExtractionMap mesh(extraction, context);
+  BorderFaces(mesh, BorderFaces::Kind::only_quads).improve();
+  collect(mesh, extraction);
 }
 
 }  // namespace meshgrain

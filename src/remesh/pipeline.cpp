@@ -253,6 +253,7 @@ void Pipeline::position_and_extract() {
   constexpr double tolerance = 0.008;
   const bool given = options_.fields != nullptr && !options_.fields->position.points.empty();
   double least_error = std::numeric_limits<double>::infinity();
+  bool has_room = true;  // beside borders that stay
   for (int attempt = 0; attempt < attempts; ++attempt) {
     PositionField positions = stage_("position field", [&] {
       return given ? transfer_position(*options_.fields, graph(), frame_, context_)
@@ -273,13 +274,14 @@ void Pipeline::position_and_extract() {
     const double aim = attempt < 3 ? 1 : 1.01;
     const double factor = std::clamp(std::sqrt(ratio / aim), 0.5, 2.0);
     if (!borders_.empty()) {
-      if (!fit_lengths_to_borders(1 / (factor * factor))) break;
+      has_room = fit_lengths_to_borders(1 / (factor * factor));
+      if (!has_room) break;
     } else {
       lengths_ = graded(graph(), scaled(lengths_, factor), growth(), context_);
     }
   }
   const double ratio = target_.count_ratio(extraction_.mesh);
-  if (ratio > 1 + tolerance && ratio < 1.2) {
+  if (has_room && ratio > 1 + tolerance && ratio < 1.2) {
     stage_("extraction", [&] { take_away_faces(tolerance); });
   }
   if (extraction_.mesh.faces.empty()) {
@@ -418,6 +420,7 @@ void Pipeline::finish_borders() {
   if (borders_.empty()) return;
   if (options_.faces == OutputFaces::quads) {
     drop_spare_middles(extraction_);
+    improve_border_quads(extraction_, context_);
     const Faces& faces = extraction_.mesh.faces;
     std::size_t triangles = 0;
     for (std::size_t f = 0; f < faces.size(); ++f) triangles += faces.degree(f) == 3;
