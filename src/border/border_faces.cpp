@@ -131,7 +131,7 @@ bool BorderFaces::is_near(const std::vector<Index>& orbit) const {
   return std::ranges::any_of(orbit, [&](Index h) { return near_[map_.origin(h)] != 0; });
 }
 
-void BorderFaces::improve() {
+bool BorderFaces::improve() {
   constexpr int sweeps = 6;
   find_near();
   for (int sweep = 0; sweep < sweeps; ++sweep) {
@@ -139,13 +139,14 @@ void BorderFaces::improve() {
     for (Index h = 0; h < map_.halfedges(); h += 2) {
       if (!map_.removed(h) && divide_anew(h)) any = true;
     }
-    if (!any) return;
+    if (!any) return sweep > 0;
   }
+  return true;
 }
 
 /// Takes an edge away and divides what lies on both sides of it, if that is better by far.
 bool BorderFaces::divide_anew(Index h) {
-  constexpr double by_far = 0.4;
+  const double by_far = kind_ == Kind::only_quads ? 1.0 : 0.4;
   constexpr std::size_t most_corners = 8;
   const Index t = PolygonMap::twin(h);
   if (mesh_.holes[h] || mesh_.holes[t] || mesh_.lines[h / 2] != no_index) return false;

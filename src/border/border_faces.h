@@ -18,7 +18,8 @@ class BorderFaces {
   void mend();
 
   /// Divides pairs of neighbouring faces near the border anew where that makes better ones.
-  void improve();
+  /// Returns whether any were.
+  bool improve();
 
  private:
   bool is_straight(Index h) const;

@@ -368,10 +368,15 @@ void lock_borders(Extraction& extraction, const BorderLoops& borders, const Grap
   }
 }
 
-void improve_border_quads(Extraction& extraction, const Context& context) {
+bool improve_border_faces(Extraction& extraction, OutputFaces faces, const Context& context) {
+  const auto kind = faces == OutputFaces::triangles ? BorderFaces::Kind::triangles
+                    : faces == OutputFaces::quads   ? BorderFaces::Kind::only_quads
+                                                    : BorderFaces::Kind::quads;
   ExtractionMap mesh(extraction, context);
-  BorderFaces(mesh, BorderFaces::Kind::only_quads).improve();
+  if (mesh.map.vertices() != extraction.mesh.positions.size()) return false;
+  if (!BorderFaces(mesh, kind).improve()) return false;
   collect(mesh, extraction);
+  return true;
 }
 
 }  // namespace meshgrain

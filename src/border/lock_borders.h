@@ -24,8 +24,9 @@ void lock_middles(Extraction& extraction, const BorderLoops& borders, const Grap
 /// edges: each leaves a triangle.
 void drop_spare_middles(Extraction& extraction);
 
-/// Divides pairs of quads near locked borders anew where that makes better ones.
-void improve_border_quads(Extraction& extraction, const Context& context);
+/// Divides pairs of faces near locked borders anew where that makes better ones; quads stay quads.
+/// Returns whether there were any.
+bool improve_border_faces(Extraction& extraction, OutputFaces faces, const Context& context);
 
 /// Joins the vertices that are one in the surface: where its pieces and borders touch.
 void join_locked(Extraction& extraction);

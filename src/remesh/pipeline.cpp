@@ -341,6 +341,11 @@ void Pipeline::smooth_faces() {
     smoothing.corners_stay = !borders_.empty();
     if (!is_cloud_ && nodes_are_vertices_) smoothing.features = &features_;
     smooth(extraction_, surface_, graph(), smoothing, context_);
+    // What is bad beside vertices that cannot move shows only now.
+    if (!borders_.empty() && improve_border_faces(extraction_, options_.faces, context_)) {
+      smooth(extraction_, surface_, graph(), smoothing, context_);
+    }
+    join_border_pieces();
   });
 }
 
@@ -420,7 +425,6 @@ void Pipeline::finish_borders() {
   if (borders_.empty()) return;
   if (options_.faces == OutputFaces::quads) {
     drop_spare_middles(extraction_);
-    improve_border_quads(extraction_, context_);
     const Faces& faces = extraction_.mesh.faces;
     std::size_t triangles = 0;
     for (std::size_t f = 0; f < faces.size(); ++f) triangles += faces.degree(f) == 3;
@@ -430,8 +434,11 @@ void Pipeline::finish_borders() {
           ": a border of an odd number of edges cannot be met by quads alone");
     }
   }
+}
+
+void Pipeline::join_border_pieces() {
   // The pieces of a surface that is not manifold were kept apart, so that each had its own borders.
-  if (!options_.manifold) join_locked(extraction_);
+  if (!borders_.empty() && !options_.manifold) join_locked(extraction_);
 }
 
 PositionField Pipeline::solve_positions() {
@@ -466,7 +473,7 @@ Extraction Pipeline::extract(const PositionField& positions) {
   } else if (nodes_are_vertices_) {
     extract.surface = &surface_;
     extract.features = &features_;
-    extract.manifold = options_.manifold || !borders_.empty();  // see finish_borders()
+    extract.manifold = options_.manifold || !borders_.empty();  // see join_border_pieces()
   } else {
     extract.border = border_of_faces(surface_, graph());
   }
