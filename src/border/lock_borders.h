@@ -25,7 +25,7 @@ void lock_middles(Extraction& extraction, const BorderLoops& borders, const Grap
 void drop_spare_middles(Extraction& extraction);
 
 /// Divides pairs of faces near locked borders anew where that makes better ones; quads stay quads.
-/// Returns whether there were any.
+/// Returns whether there were any; a mesh that is not manifold stays as it is.
 bool improve_border_faces(Extraction& extraction, OutputFaces faces, const Context& context);
 
 /// Joins the vertices that are one in the surface: where its pieces and borders touch.

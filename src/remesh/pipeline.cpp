@@ -345,7 +345,6 @@ void Pipeline::smooth_faces() {
     if (!borders_.empty() && improve_border_faces(extraction_, options_.faces, context_)) {
       smooth(extraction_, surface_, graph(), smoothing, context_);
     }
-    join_border_pieces();
   });
 }
 
@@ -434,11 +433,8 @@ void Pipeline::finish_borders() {
           ": a border of an odd number of edges cannot be met by quads alone");
     }
   }
-}
-
-void Pipeline::join_border_pieces() {
   // The pieces of a surface that is not manifold were kept apart, so that each had its own borders.
-  if (!borders_.empty() && !options_.manifold) join_locked(extraction_);
+  if (!options_.manifold) join_locked(extraction_);
 }
 
 PositionField Pipeline::solve_positions() {
@@ -473,7 +469,7 @@ Extraction Pipeline::extract(const PositionField& positions) {
   } else if (nodes_are_vertices_) {
     extract.surface = &surface_;
     extract.features = &features_;
-    extract.manifold = options_.manifold || !borders_.empty();  // see join_border_pieces()
+    extract.manifold = options_.manifold || !borders_.empty();  // see finish_borders()
   } else {
     extract.border = border_of_faces(surface_, graph());
   }

@@ -68,7 +68,6 @@ class Pipeline {
   /// Into the quads that are written.
   void split(Extraction& extraction) const;
   void finish_borders();
-  void join_border_pieces();
   double growth() const { return target_.growth(options_.sizing.grading); }
   const Graph& graph() const { return hierarchy_.levels[0]; }
   Fields& fields() { return result_.fields; }
