@@ -424,6 +424,7 @@ void Pipeline::finish_borders() {
   if (borders_.empty()) return;
   if (options_.faces == OutputFaces::quads) {
     drop_spare_middles(extraction_);
+    improve_border_faces(extraction_, options_.faces, context_);
     const Faces& faces = extraction_.mesh.faces;
     std::size_t triangles = 0;
     for (std::size_t f = 0; f < faces.size(); ++f) triangles += faces.degree(f) == 3;
