@@ -30,6 +30,15 @@ void check(const RemeshOptions& options) {
   }
   if (!(options.sizing.grading > 1)) throw Error("the grading of sizes must be larger than 1");
   if (options.smoothing < 0) throw Error("the number of smoothing iterations must not be negative");
+  if (options.lock_borders && options.symmetry.any()) {
+    throw Error("borders cannot be locked and the result made symmetric: leave one of them out");
+  }
+  if (options.lock_borders && options.faces == OutputFaces::hexagons) {
+    throw Error("hexagons leave out the border, which cannot be locked then");
+  }
+  if (options.lock_borders && options.graph.nodes == GraphNodes::faces) {
+    throw Error("borders can be locked over the input's vertices, not over its faces");
+  }
   if (options.solver.sweeps < 1) throw Error("at least one sweep a level is needed");
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
@@ -13,6 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "mesh/border.h"
 #include "meshgrain/error.h"
 #include "meshgrain/fields_file.h"
 #include "meshgrain/io.h"
@@ -404,6 +406,29 @@ TEST_F(Cli, ReportTellsAll) {
                            "extraction", "smoothing", "write"}) {
     EXPECT_EQ(std::count(names.begin(), names.end(), name) > 0, true) << name;
   }
+}
+
+/// What is written has the same numbers on the border as what was read.
+TEST_F(Cli, LockedBordersAreWrittenAsTheyWere) {
+  sample("plate", "in.obj", 0.4);
+  run_well("in.obj -o out.obj -f 800 --lock-borders");
+  const Mesh before = read_mesh(folder_ / "in.obj"), after = read_mesh(folder_ / "out.obj");
+  const std::vector<std::array<Index, 2>> border = border_edges(before);
+  EXPECT_EQ(border_edges(after).size(), border.size());
+  const std::string text = "\n" + read("in.obj"), written = "\n" + read("out.obj");
+  std::size_t found = 0;
+  for (std::size_t v = 0, at = 0; v < before.positions.size(); ++v) {
+    at = text.find("\nv ", at) + 1;
+    const bool on_border =
+        std::ranges::any_of(border, [&](const auto& e) { return e[0] == v || e[1] == v; });
+    if (!on_border) continue;
+    const std::string line = text.substr(at - 1, text.find('\n', at) - at + 2);
+    EXPECT_NE(written.find(line), std::string::npos) << line;
+    ++found;
+  }
+  EXPECT_EQ(found, border.size());
+  expect_refused("in.obj -o out.obj --lock-borders --hexagons", 1, "hexagons");
+  expect_refused("in.obj -o out.obj --lock-borders --symmetry x", 1, "symmetric");
 }
 
 TEST_F(Cli, SeveralSizesInOneRun) {

@@ -216,6 +216,9 @@ void add_options(CLI::App& app, Arguments& a) {
           ->type_name("FILE"));
   follow(app.add_flag("-b,--boundaries,!--free-boundaries", o.features.align_border,
                       "follow the border of an open mesh (yes)"));
+  follow(app.add_flag("--lock-borders", o.lock_borders,
+                      "the border's vertices stay exactly where they are, and its edges as they "
+                      "are, so that the result can be sewn to what lay beside the input"));
   follow(app.add_option_function<std::string>(
                 "--symmetry", [&o](const std::string& text) { parse_symmetry(text, o.symmetry); },
                 "exactly symmetric about planes across x, y, z (xy: both), or auto: about the one "

@@ -32,6 +32,8 @@ struct SmoothOptions {
   /// From 0 to 1: how far vertices go off the surface in the end, so that faces are not all inside
   /// of what is convex.
   double lift = 0;
+  /// Corners stay even where the faces around them are bad.
+  bool corners_stay = false;
 };
 
 /// Evens the faces out: each iteration moves every vertex to the mean of where it would be in the

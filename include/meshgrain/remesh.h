@@ -52,6 +52,9 @@ struct RemeshOptions {
   CurvatureAlignment curvature;
   int smoothing = 72;     ///< Iterations of smooth() (0: only put onto the surface).
   bool manifold = false;  ///< Drop what is not manifold.
+  /// Of meshes: the border's vertices stay exactly where they are, and its edges as they are, so
+  /// that the result can be sewn to what lay beside the input.
+  bool lock_borders = false;
   /// Leave out pieces of a mesh that have room for fewer faces than this. Others come back coarse,
   /// but closed where they were.
   double min_component = 0;

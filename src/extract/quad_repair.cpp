@@ -200,6 +200,9 @@ std::optional<int> FaceRepair::closing_gain(Index h) const {
   for (const Index v : sides) {
     if (static_cast<int>(map_.valence(v)) < regular_valence(clusters_.on_border[v]))
       return std::nullopt;
+    // The last edge that parts an angle of the border which nothing can bend.
+    const bool fixed = clusters_.on_border[v] && clusters_.hold[v] == at_corner;
+    if (fixed && map_.valence(v) <= 3) return std::nullopt;
     gain += is_irregular(v, 0) - is_irregular(v, -1);
   }
   return gain;

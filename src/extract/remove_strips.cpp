@@ -135,6 +135,9 @@ class Strips {
       const int before = !is_regular(a, valence_[a]) + !is_regular(b, valence_[b]);
       if (!is_regular(a, valence) && before == 0 && hold_[a] != at_corner) return false;
       if (valence < (on_border_[a] ? 2u : 3u)) return false;
+      // The last edge that parts an angle of the border which nothing can bend.
+      if (on_border_[a] && hold_[a] == at_corner && valence < std::min<std::size_t>(3, valence_[a]))
+        return false;
     }
     // Neither across itself nor around a vertex.
     std::sort(vertices.begin(), vertices.end());

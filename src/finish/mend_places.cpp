@@ -15,8 +15,13 @@ namespace {
 class Mending {
  public:
   Mending(const Mesh& mesh, const VertexFaces& around, Placement& placement, LocalSearch& search,
-          const Context& context)
-      : mesh_(mesh), around_(around), placement_(placement), search_(search), context_(context) {}
+          bool corners_stay, const Context& context)
+      : mesh_(mesh),
+        around_(around),
+        placement_(placement),
+        search_(search),
+        corners_stay_(corners_stay),
+        context_(context) {}
 
   void run() {
     // With as many rings of faces around the bad ones as it takes.
@@ -201,6 +206,7 @@ class Mending {
   enum class Who { free, free_and_ends, all };
 
   bool may_leave(Index v, Who who) const {
+    if (corners_stay_ && placement_.is_fixed(v)) return false;
     if (who == Who::all || placement_.is_free(v)) return true;
     return who == Who::free_and_ends && placement_.is_tethered(v);
   }
@@ -230,14 +236,15 @@ class Mending {
   const VertexFaces& around_;
   Placement& placement_;
   LocalSearch& search_;
+  bool corners_stay_;
   const Context& context_;
 };
 
 }  // namespace
 
 void mend_places(const Mesh& mesh, const VertexFaces& around, Placement& placement,
-                 LocalSearch& search, const Context& context) {
-  Mending(mesh, around, placement, search, context).run();
+                 LocalSearch& search, bool corners_stay, const Context& context) {
+  Mending(mesh, around, placement, search, corners_stay, context).run();
 }
 
 }  // namespace meshgrain

@@ -12,8 +12,8 @@ namespace meshgrain {
 /// other, are turned over or nearly degenerate. They move over the surface, or if that fails a
 /// little off it; if that fails too, they let go of the features that hold them. Where nothing
 /// helps, or the surface passes through itself, all stays as it was. `search` is over the same
-/// mesh.
+/// mesh. `corners_stay`: even then.
 void mend_places(const Mesh& mesh, const VertexFaces& around, Placement& placement,
-                 LocalSearch& search, const Context& context);
+                 LocalSearch& search, bool corners_stay, const Context& context);
 
 }  // namespace meshgrain

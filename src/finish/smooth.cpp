@@ -248,7 +248,7 @@ void Smoother::mend() {
   placement_.fit_lines();
   LocalSearch search(extraction_, around_, placement_);
   untangle(mesh_, around_, search, context_);
-  mend_places(mesh_, around_, placement_, search, context_);
+  mend_places(mesh_, around_, placement_, search, options_.corners_stay, context_);
 }
 
 void Smoother::lift() {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "border/lock_borders.h"
 #include "extract/reduce_faces.h"
 #include "extract/remove_strips.h"
 #include "field/transfer.h"
@@ -38,6 +39,37 @@ std::vector<std::array<Index, 2>> border_of_faces(const Mesh& surface, const Gra
   return result;
 }
 
+/// Where the border of a mesh is, to be put back there.
+class BorderPositions {
+ public:
+  BorderPositions(const Mesh& mesh, bool wanted, const Context& context) {
+    if (wanted) positions_ = of(mesh, context);
+  }
+
+  /// If the mesh still has the same vertices on its border.
+  void put_back(Mesh& mesh, const Context& context) const {
+    if (positions_.empty()) return;
+    std::size_t k = 0;
+    const std::vector<std::uint8_t> on_border = border_vertices(mesh, context);
+    if (of(mesh, context).size() != positions_.size()) return;
+    for (std::size_t v = 0; v < on_border.size(); ++v) {
+      if (on_border[v]) mesh.positions[v] = positions_[k++];
+    }
+  }
+
+ private:
+  static std::vector<Vec3> of(const Mesh& mesh, const Context& context) {
+    const std::vector<std::uint8_t> on_border = border_vertices(mesh, context);
+    std::vector<Vec3> result;
+    for (std::size_t v = 0; v < on_border.size(); ++v) {
+      if (on_border[v]) result.push_back(mesh.positions[v]);
+    }
+    return result;
+  }
+
+  std::vector<Vec3> positions_;
+};
+
 }  // namespace
 
 Pipeline::Pipeline(const Mesh& input, const RemeshOptions& options, const Context& context)
@@ -48,6 +80,9 @@ Pipeline::Pipeline(const Mesh& input, const RemeshOptions& options, const Contex
       nodes_are_vertices_(is_cloud_ || options.graph.nodes == GraphNodes::vertices) {
   result_.report.input_vertices = input.positions.size();
   result_.report.input_faces = input.faces.size();
+  if (options.lock_borders && is_cloud_) {
+    throw Error("borders of a mesh can be locked: the input is a point cloud, which has none");
+  }
 }
 
 void Pipeline::clean_up(Mesh input) {
@@ -65,8 +100,11 @@ void Pipeline::sharpen() {
   if (is_cloud_) return;
   stage_("noise", [&] {
     const double side = target_.face_side(surface_area(surface_));
+    const BorderPositions border(surface_, options_.lock_borders, context_);
     is_sharpened_ = take_out_noise(surface_, options_, side, result_.report.notes, context_);
+    border.put_back(surface_, context_);
   });
+  if (options_.lock_borders) locked_ = border_vertices(surface_, context_);
 }
 
 void Pipeline::refine() {
@@ -85,10 +123,19 @@ void Pipeline::refine() {
     });
   }
   if (!is_cloud_) lay_guides(target_.edge_length(surface_area(surface_)));
-  stage_("order", [&] {
-    const std::vector<Index> order = sort_along_curve(surface_, context_);
-    if (!guides_.edges.empty()) renumber(guides_, order);
-  });
+  stage_("order", [&] { put_in_order(); });
+}
+
+std::vector<Index> Pipeline::put_in_order() {
+  const std::size_t count = surface_.positions.size();
+  const std::vector<Index> order = sort_along_curve(surface_, context_);
+  if (!guides_.edges.empty()) renumber(guides_, order);
+  if (locked_.empty()) return order;
+  locked_.resize(count, 0);  // what was split off is no vertex of the input
+  std::vector<std::uint8_t> locked(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) locked[i] = locked_[order[i]];
+  locked_.swap(locked);
+  return order;
 }
 
 void Pipeline::build_levels() {
@@ -109,6 +156,7 @@ void Pipeline::find_lines() {
   }
   constraints_ = guide_constraints(graph(), soft_guides_);
   if (is_cloud_ || !nodes_are_vertices_) return;
+  if (options_.lock_borders) borders_ = find_border_loops(surface_, locked_, context_);
   stage_("features", [&] {
     FeatureOptions options = options_.features;
     if (options_.orientation_energy != OrientationEnergy::extrinsic) options.orient_creases = 1;
@@ -127,6 +175,39 @@ void Pipeline::size_faces() {
   const EdgeLength relative = relative_edge_lengths(hierarchy_, surface_, features_, sizing,
                                                     target_.face_side(area_), context_);
   lengths_ = target_.edge_lengths(graph(), relative, growth(), context_);
+  if (borders_.empty()) return;
+  free_lengths_ = lengths_;
+  // The lattice of pure quads is twice as coarse as their edges.
+  const double sides = options_.faces == OutputFaces::quads ? 2 : 1;
+  border_spacing_ = border_spacing(borders_, graph(), mean_length_, sides, context_);
+  fit_lengths_to_borders(1);
+}
+
+bool Pipeline::fit_lengths_to_borders(double more_faces) {
+  const double cells = std::pow(length_for_count(graph(), lengths_, 1, 1), 2) * more_faces;
+  const auto fit = [&](double factor) {
+    const EdgeLength lengths =
+        fit_to_borders(scaled(free_lengths_, factor), border_spacing_, growth());
+    lengths_ = graded(graph(), lengths, growth(), context_);
+    return length_for_count(graph(), lengths_, 1, cells);
+  };
+  if (options_.edge_length > 0) {
+    fit(1);
+    return true;
+  }
+  // Bisection, as there are never more faces with longer edges. Where the border takes all that are
+  // wanted, others must not be so large that nothing is left of the shape.
+  constexpr int rounds = 14;
+  constexpr double near_enough = 0.002;
+  constexpr double least = 1.0 / 16, most = 3;
+  double low = least, high = most;
+  for (int round = 0; round < rounds; ++round) {
+    const double factor = round == 0 ? 1 : std::sqrt(low * high);
+    const double missing = fit(factor);
+    if (std::abs(missing - 1) < near_enough) return true;
+    (missing > 1 ? low : high) = factor;
+  }
+  return low > least && high < most;
 }
 
 void Pipeline::refine_for_sizes() {
@@ -136,12 +217,13 @@ void Pipeline::refine_for_sizes() {
   std::vector<float> longest = scaled(lengths_, 0.5).values;
   if (!stage_("subdivide", [&] { return subdivide(surface_, longest, context_); })) return;
   stage_("order", [&] {
-    const std::vector<Index> order = sort_along_curve(surface_, context_);
+    const std::vector<Index> order = put_in_order();
     lengths_.values.resize(order.size());
     for (std::size_t i = 0; i < order.size(); ++i) lengths_.values[i] = 2 * longest[order[i]];
   });
   build_levels();
   find_lines();
+  if (!borders_.empty()) return size_faces();
   lengths_ = graded(graph(), lengths_, growth(), context_);
 }
 
@@ -171,6 +253,7 @@ void Pipeline::position_and_extract() {
   constexpr double tolerance = 0.008;
   const bool given = options_.fields != nullptr && !options_.fields->position.points.empty();
   double least_error = std::numeric_limits<double>::infinity();
+  bool has_room = true;  // beside borders that stay
   for (int attempt = 0; attempt < attempts; ++attempt) {
     PositionField positions = stage_("position field", [&] {
       return given ? transfer_position(*options_.fields, graph(), frame_, context_)
@@ -190,10 +273,15 @@ void Pipeline::position_and_extract() {
     if (given || (ratio > 1 - tolerance && ratio < 1 + closing)) break;
     const double aim = attempt < 3 ? 1 : 1.01;
     const double factor = std::clamp(std::sqrt(ratio / aim), 0.5, 2.0);
-    lengths_ = graded(graph(), scaled(lengths_, factor), growth(), context_);
+    if (!borders_.empty()) {
+      has_room = fit_lengths_to_borders(1 / (factor * factor));
+      if (!has_room) break;
+    } else {
+      lengths_ = graded(graph(), scaled(lengths_, factor), growth(), context_);
+    }
   }
   const double ratio = target_.count_ratio(extraction_.mesh);
-  if (ratio > 1 + tolerance && ratio < 1.35) {
+  if (has_room && ratio > 1 + tolerance && ratio < 1.35) {
     stage_("extraction", [&] { take_away_faces(tolerance); });
   }
   if (extraction_.mesh.faces.empty()) {
@@ -206,7 +294,7 @@ void Pipeline::position_and_extract() {
 void Pipeline::take_away_faces(double tolerance) {
   if (options_.faces == OutputFaces::quads) {
     Extraction quads = extraction_;
-    split_into_quads(quads);
+    split(quads);
     const auto count = static_cast<double>(quads.mesh.faces.size());
     const double wanted = count / target_.count_ratio(extraction_.mesh);
     constexpr double one_percent = 0.0099;  // strips are long: all that may be
@@ -236,7 +324,8 @@ void Pipeline::count_singularities() {
 
 void Pipeline::smooth_faces() {
   stage_("smoothing", [&] {
-    if (options_.faces == OutputFaces::quads && !is_split_) split_into_quads(extraction_);
+    if (options_.faces == OutputFaces::quads && !is_split_) split(extraction_);
+    finish_borders();
     SmoothOptions smoothing;
     smoothing.iterations = options_.smoothing;
     // The more regular, the more the grid must stretch. Triangles of one size are regular; the
@@ -249,8 +338,13 @@ void Pipeline::smooth_faces() {
     const EdgeLength& lengths = fields().position.edge_length;
     if (!lengths.uniform() && nodes_are_vertices_) smoothing.relative_size = lengths;
     smoothing.lift = options_.sizing.adaptive;
+    smoothing.corners_stay = !borders_.empty();
     if (!is_cloud_ && nodes_are_vertices_) smoothing.features = &features_;
     smooth(extraction_, surface_, graph(), smoothing, context_);
+    // What is bad beside vertices that cannot move shows only now.
+    if (!borders_.empty() && improve_border_faces(extraction_, options_.faces, context_)) {
+      smooth(extraction_, surface_, graph(), smoothing, context_);
+    }
   });
 }
 
@@ -321,6 +415,29 @@ void Pipeline::append(const FeatureConstraints& more) {
                                more.position.end());
 }
 
+void Pipeline::split(Extraction& extraction) const {
+  split_into_quads(extraction);
+  if (!borders_.empty()) lock_middles(extraction, borders_, graph());
+}
+
+void Pipeline::finish_borders() {
+  if (borders_.empty()) return;
+  if (options_.faces == OutputFaces::quads) {
+    drop_spare_middles(extraction_);
+    improve_border_faces(extraction_, options_.faces, context_);
+    const Faces& faces = extraction_.mesh.faces;
+    std::size_t triangles = 0;
+    for (std::size_t f = 0; f < faces.size(); ++f) triangles += faces.degree(f) == 3;
+    if (triangles > 0) {
+      result_.report.notes.push_back(
+          std::to_string(triangles) + (triangles == 1 ? " triangle" : " triangles") +
+          ": a border of an odd number of edges cannot be met by quads alone");
+    }
+  }
+  // The pieces of a surface that is not manifold were kept apart, so that each had its own borders.
+  if (!options_.manifold) join_locked(extraction_);
+}
+
 PositionField Pipeline::solve_positions() {
   PositionOptions position;
   static_cast<SolverOptions&>(position) = options_.solver;
@@ -353,6 +470,7 @@ Extraction Pipeline::extract(const PositionField& positions) {
   } else if (nodes_are_vertices_) {
     extract.surface = &surface_;
     extract.features = &features_;
+    extract.manifold = options_.manifold || !borders_.empty();  // see finish_borders()
   } else {
     extract.border = border_of_faces(surface_, graph());
   }
@@ -361,6 +479,7 @@ Extraction Pipeline::extract(const PositionField& positions) {
     for (Index& node : found.nodes) node = std::as_const(surface_.faces)[node][0];
   }
   if (options_.manifold) make_manifold(found);
+  if (!borders_.empty()) lock_borders(found, borders_, graph(), options_.faces, context_);
   if (options_.faces == OutputFaces::hexagons) take_dual(found);
   return found;
 }

@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "border/border_loops.h"
+#include "border/border_sizing.h"
 #include "features/find_features.h"
 #include "features/guide_constraints.h"
 #include "mesh/frame.h"
@@ -57,6 +59,15 @@ class Pipeline {
   /// Guides onto the surface: those that edges must follow are cut into it.
   void lay_guides(double edge_length);
   void append(const FeatureConstraints& more);
+  /// Sorts the surface along a curve, and all that goes with its vertices.
+  std::vector<Index> put_in_order();
+
+  /// Lengths that have so many times the faces, but are what borders that stay need there. Returns
+  /// whether there are any.
+  bool fit_lengths_to_borders(double more_faces);
+  /// Into the quads that are written.
+  void split(Extraction& extraction) const;
+  void finish_borders();
   double growth() const { return target_.growth(options_.sizing.grading); }
   const Graph& graph() const { return hierarchy_.levels[0]; }
   Fields& fields() { return result_.fields; }
@@ -79,6 +90,11 @@ class Pipeline {
   Hierarchy hierarchy_;
   double area_ = 0, mean_length_ = 0;
   EdgeLength lengths_;
+  std::vector<std::uint8_t>
+      locked_;           // one flag a vertex of the surface; of RemeshOptions::lock_borders
+  BorderLoops borders_;  // that stay
+  BorderSpacing border_spacing_;
+  EdgeLength free_lengths_;            // what lengths_ would be without these borders
   GuideLines guides_;                  // that edges follow
   std::vector<GuideRun> soft_guides_;  // that fields are drawn to
   FeatureLines features_;

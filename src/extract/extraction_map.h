@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "extract/clusters.h"
+#include "extract/polygon_map.h"
+
+namespace meshgrain {
+
+/// An extracted mesh as a map, to be changed and collected again (collect_faces).
+struct ExtractionMap {
+  ExtractionMap(const Extraction& extraction, const Context& context);
+
+  PolygonMap map;
+  Clusters clusters;                // of its vertices (cover, edges and border left empty)
+  std::vector<std::uint8_t> holes;  // one flag a halfedge
+  std::vector<Index> lines;         // one an edge, or no_index
+};
+
+}  // namespace meshgrain
