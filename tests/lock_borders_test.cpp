@@ -99,6 +99,14 @@ void expect_same_border(const Mesh& input, const Mesh& result) {
   made::expect_same_topology(mesh_statistics(result), mesh_statistics(input));
 }
 
+Mesh locked(const Mesh& mesh, OutputFaces faces, std::size_t count) {
+  RemeshOptions options;
+  options.faces = faces;
+  options.face_count = count;
+  options.lock_borders = true;
+  return remesh(mesh, options).mesh;
+}
+
 TEST(LockBorders, TheBorderIsTheInputsBitForBit) {
   for (const Case& shape : cases()) {
     for (const OutputFaces faces :
@@ -107,11 +115,7 @@ TEST(LockBorders, TheBorderIsTheInputsBitForBit) {
       for (const std::size_t count : {std::size_t{500}, many}) {
         SCOPED_TRACE(shape.name + " " + std::to_string(static_cast<int>(faces)) + " " +
                      std::to_string(count));
-        RemeshOptions options;
-        options.faces = faces;
-        options.face_count = count;
-        options.lock_borders = true;
-        const Mesh result = remesh(shape.mesh, options).mesh;
+        const Mesh result = locked(shape.mesh, faces, count);
         expect_same_border(shape.mesh, result);
         const MeshStatistics after = mesh_statistics(result);
         EXPECT_EQ(after.inverted_quads, 0u);
@@ -147,11 +151,7 @@ TEST(LockBorders, AnyNumberOfVerticesIsMet) {
       for (const std::size_t count : {20, 100}) {
         SCOPED_TRACE(shape.name + " " + std::to_string(static_cast<int>(faces)) + " " +
                      std::to_string(count));
-        RemeshOptions options;
-        options.faces = faces;
-        options.face_count = count;
-        options.lock_borders = true;
-        expect_same_border(shape.mesh, remesh(shape.mesh, options).mesh);
+        expect_same_border(shape.mesh, locked(shape.mesh, faces, count));
       }
     }
   }

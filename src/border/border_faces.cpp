@@ -274,19 +274,9 @@ Index BorderFaces::add_edge(Index a, Index b) {
 }
 
 void BorderFaces::add_hub(const std::vector<Index>& orbit) {
-  Clusters& clusters = mesh_.clusters;
-  Vec3 position = Vec3::Zero(), normal = Vec3::Zero();
-  for (const Index g : orbit) {
-    position += clusters.positions[map_.origin(g)];
-    normal += clusters.normals[map_.origin(g)];
-  }
-  const Index first = map_.origin(orbit[0]);
-  clusters.positions.push_back(position / static_cast<float>(orbit.size()));
-  const float length = normal.norm();
-  clusters.normals.push_back(length > 1e-6f ? Vec3(normal / length) : clusters.normals[first]);
-  clusters.nodes.push_back(clusters.nodes[first]);
-  clusters.on_border.push_back(0);
-  clusters.hold.push_back(free_vertex);
+  std::vector<Index> rim;
+  for (const Index g : orbit) rim.push_back(map_.origin(g));
+  mesh_.clusters.append_mean(rim);
   map_.add_hub(orbit[0]);
   mesh_.holes.resize(map_.halfedges(), 0);
   mesh_.lines.resize(map_.halfedges() / 2, no_index);

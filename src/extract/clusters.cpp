@@ -188,6 +188,21 @@ Clusters average_clusters(const Graph& graph, const PositionField& position,
   return result;
 }
 
+void Clusters::append_mean(std::span<const Index> some) {
+  Vec3 position = Vec3::Zero(), normal = Vec3::Zero();
+  for (const Index c : some) {
+    position += positions[c];
+    normal += normals[c];
+  }
+  const Index first = some[0];
+  positions.push_back(position / static_cast<float>(some.size()));
+  const float length = normal.norm();
+  normals.push_back(length > 1e-6f ? Vec3(normal / length) : normals[first]);
+  nodes.push_back(nodes[first]);
+  on_border.push_back(0);
+  hold.push_back(free_vertex);
+}
+
 Clusters collapse_clusters(const Graph& graph, const OrientationField& orientation,
                            const PositionField& position, const ExtractOptions& options,
                            const Context& context) {

@@ -19,6 +19,9 @@ struct Clusters {
   std::vector<std::array<Index, 2>> border;  // those of the edges that lie on the border, sorted
   std::vector<std::uint8_t> on_border;       // whether a cluster has nodes on the border
   std::vector<std::uint8_t> hold;            // how each is held (Hold); for whoever has features
+
+  /// Another one in the middle of some, which nothing holds.
+  void append_mean(std::span<const Index> some);
 };
 
 /// Positions, normals and nearest nodes of `count` clusters (section 3.8). Member m is node

@@ -247,18 +247,8 @@ bool FaceRepair::split_once(Index h) {
 void FaceRepair::add_hub(Index h) {
   std::vector<Index> rim;
   map_.orbit(h, rim);
-  Vec3 position = Vec3::Zero(), normal = Vec3::Zero();
-  for (const Index g : rim) {
-    position += clusters_.positions[map_.origin(g)];
-    normal += clusters_.normals[map_.origin(g)];
-  }
-  const Index first = map_.origin(rim[0]);
-  clusters_.positions.push_back(position / static_cast<float>(rim.size()));
-  const float length = normal.norm();
-  clusters_.normals.push_back(length > 1e-6f ? Vec3(normal / length) : clusters_.normals[first]);
-  clusters_.nodes.push_back(clusters_.nodes[first]);
-  clusters_.on_border.push_back(0);
-  clusters_.hold.push_back(free_vertex);
+  for (Index& g : rim) g = map_.origin(g);
+  clusters_.append_mean(rim);
   map_.add_hub(h);
   hole_.resize(map_.halfedges(), 0);
   lines_.resize(map_.halfedges() / 2, no_index);
