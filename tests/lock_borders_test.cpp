@@ -201,6 +201,22 @@ TEST(LockBorders, SheetsThatMeetGoOnToMeet) {
   }
 }
 
+/// Creases run into the border, which stays as noisy as it is.
+TEST(LockBorders, NoiseIsTakenOutBesideTheBorderOnly) {
+  Mesh scan = sample_shape("bracket", 2);
+  add_noise(scan, 0.2);
+  scan = keep(std::move(scan), [](const Vec3& p) { return p.x() > 0; });
+  RemeshOptions options;
+  options.face_count = 3000;
+  options.lock_borders = true;
+  const RemeshResult result = remesh(scan, options);
+  expect_same_border(scan, result.mesh);
+  const auto tells_of_noise = [](const std::string& note) {
+    return note.find("noisy") != std::string::npos;
+  };
+  EXPECT_TRUE(std::ranges::any_of(result.report.notes, tells_of_noise));
+}
+
 TEST(LockBorders, StaysUnderOtherOptions) {
   const Mesh input = tube(40, 60);
   RemeshOptions options;

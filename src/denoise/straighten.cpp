@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "mesh/border.h"
 #include "mesh/vertex_faces.h"
 #include "meshgrain/surface.h"
 #include "util/sort_unique.h"
@@ -49,10 +50,16 @@ Vec3 fitted(const std::vector<Vec3>& points, const std::vector<double>& ways, st
 
 class Mover {
  public:
-  Mover(Mesh& mesh, const Context& context) : mesh_(mesh), around_(vertex_faces(mesh, context)) {}
+  Mover(Mesh& mesh, const Context& context)
+      : mesh_(mesh), around_(vertex_faces(mesh, context)), stays_(mesh.positions.size(), 0) {
+    for (const auto& ends : rim_edges(mesh, context)) {
+      for (const Index v : ends) stays_[v] = 1;
+    }
+  }
 
   /// Goes as far towards `to` as no face turns much.
   void move(Index v, const Vec3& to) {
+    if (stays_[v]) return;
     const Vec3 from = mesh_.positions[v];
     for (float share = 1; share > 0.1f; share /= 2) {
       const Vec3 p = from + share * (to - from);
@@ -114,6 +121,7 @@ class Mover {
 
   Mesh& mesh_;
   VertexFaces around_;
+  std::vector<std::uint8_t> stays_;
 };
 
 }  // namespace

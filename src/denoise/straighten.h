@@ -7,7 +7,7 @@ namespace meshgrain {
 
 /// Moves the vertices of lines between their corners to smooth curves through their neighbours
 /// along the line, as far as no face turns over: lines of a scan go zigzag from one of its
-/// triangles to the next.
+/// triangles to the next. Vertices on the border stay.
 void straighten_lines(Mesh& triangles, const FeatureLines& lines, const Context& context);
 
 }  // namespace meshgrain

@@ -39,37 +39,6 @@ std::vector<std::array<Index, 2>> border_of_faces(const Mesh& surface, const Gra
   return result;
 }
 
-/// Where the border of a mesh is, to be put back there.
-class BorderPositions {
- public:
-  BorderPositions(const Mesh& mesh, bool wanted, const Context& context) {
-    if (wanted) positions_ = of(mesh, context);
-  }
-
-  /// If the mesh still has the same vertices on its border.
-  void put_back(Mesh& mesh, const Context& context) const {
-    if (positions_.empty()) return;
-    std::size_t k = 0;
-    const std::vector<std::uint8_t> on_border = border_vertices(mesh, context);
-    if (of(mesh, context).size() != positions_.size()) return;
-    for (std::size_t v = 0; v < on_border.size(); ++v) {
-      if (on_border[v]) mesh.positions[v] = positions_[k++];
-    }
-  }
-
- private:
-  static std::vector<Vec3> of(const Mesh& mesh, const Context& context) {
-    const std::vector<std::uint8_t> on_border = border_vertices(mesh, context);
-    std::vector<Vec3> result;
-    for (std::size_t v = 0; v < on_border.size(); ++v) {
-      if (on_border[v]) result.push_back(mesh.positions[v]);
-    }
-    return result;
-  }
-
-  std::vector<Vec3> positions_;
-};
-
 }  // namespace
 
 Pipeline::Pipeline(const Mesh& input, const RemeshOptions& options, const Context& context)
@@ -100,9 +69,7 @@ void Pipeline::sharpen() {
   if (is_cloud_) return;
   stage_("noise", [&] {
     const double side = target_.face_side(surface_area(surface_));
-    const BorderPositions border(surface_, options_.lock_borders, context_);
     is_sharpened_ = take_out_noise(surface_, options_, side, result_.report.notes, context_);
-    border.put_back(surface_, context_);
   });
   if (options_.lock_borders) locked_ = border_vertices(surface_, context_);
 }
