@@ -214,8 +214,10 @@ void add_options(CLI::App& app, Arguments& a) {
                      "only the fields to them, by so much; may be given again")
           ->allow_extra_args(false)
           ->type_name("FILE"));
-  follow(app.add_flag("-b,--boundaries,!--free-boundaries", o.features.align_border,
+  follow(app.add_flag("-b,--boundaries", o.features.align_border,
                       "follow the border of an open mesh (yes)"));
+  follow(app.add_flag_callback(
+      "--free-boundaries", [&o] { o.features.align_border = false; }, "do not follow it"));
   follow(app.add_flag("--lock-borders", o.lock_borders,
                       "the border's vertices stay exactly where they are, and its edges as they "
                       "are, so that the result can be sewn to what lay beside the input"));
