@@ -4,6 +4,7 @@
 
 #include "made_graph.h"
 #include "reference.h"
+#include "relaxed.h"
 
 namespace meshgrain {
 namespace {
@@ -105,7 +106,7 @@ TYPED_TEST(OrientationKernelTest, RelaxesByThePapersLocalIteration) {
   // Also after some sweeps, when the field is smooth.
   for (int round = 0; round < 3; ++round) {
     for (Index i = 0; i < this->graph.size(); ++i) {
-      const Vec3 got = kernel.relax(i, this->field.data());
+      const Vec3 got = made::relaxed(kernel, i, this->field.data());
       if constexpr (TestFixture::E == convex) {
         const V expected = this->knoppel(i);
         ASSERT_NEAR(got.norm(), expected.norm(), 1e-4);
@@ -152,7 +153,7 @@ TYPED_TEST(OrientationKernelTest, MeasuresThePapersEnergy) {
     EXPECT_NEAR(got, expected, 1e-4 * expected) << "smooth " << smooth;
     for (int sweep = 0; sweep < 4; ++sweep) {
       for (Index i = 0; i < this->graph.size(); ++i) {
-        this->field[i] = kernel.relax(i, this->field.data());
+        this->field[i] = made::relaxed(kernel, i, this->field.data());
       }
     }
   }
@@ -174,7 +175,7 @@ TYPED_TEST(OrientationKernelTest, ConstraintsInterpolate) {
     const typename TestFixture::Kernel kernel(this->graph, constraints);
     for (Index i = 0; i < n; ++i) {
       const V normal = v(this->graph.normals[i]);
-      const V start = v(free.relax(i, this->field.data()));
+      const V start = v(made::relaxed(free, i, this->field.data()));
       V target = v(constraints.directions[i]);
       target = (target - normal * normal.dot(target)).normalized();
       const reference::Match m = reference::match_intrinsic(rosy, start, normal, target);
@@ -182,7 +183,7 @@ TYPED_TEST(OrientationKernelTest, ConstraintsInterpolate) {
       const V similar = reference::rotate(rosy, target, normal, m.j);
       const V expected = (1 - strength) * start + strength * start.norm() * similar;
       if (expected.norm() < 0.1 * start.norm()) continue;  // opposite: no direction between them
-      const V got = v(kernel.relax(i, this->field.data()));
+      const V got = v(made::relaxed(kernel, i, this->field.data()));
       ASSERT_LT(reference::angle(got, expected), 2e-3) << "strength " << strength;
       if (strength == 0) {
         ASSERT_EQ(got, start);
@@ -200,7 +201,7 @@ TYPED_TEST(OrientationKernelTest, ValuesStayTangent) {
     const Vec3& n = this->graph.normals[i];
     EXPECT_NEAR(kernel.random(i, i).norm(), 1, 1e-5);
     for (const Vec3& value :
-         {kernel.random(i, i), kernel.relax(i, this->field.data()),
+         {kernel.random(i, i), made::relaxed(kernel, i, this->field.data()),
           kernel.prolong(i, Vec3(1, 2, 3).normalized()), kernel.prolong(i, n)}) {
       ASSERT_NEAR(value.dot(n), 0, 1e-5);
       ASSERT_TRUE(value.allFinite());
@@ -216,7 +217,7 @@ TYPED_TEST(OrientationKernelTest, IsolatedNodesKeepTheirValue) {
   one.offsets = {0, 0};
   const typename TestFixture::Kernel kernel(one, this->none);
   const Vec3 value = Vec3::UnitX();
-  EXPECT_EQ(kernel.relax(0, &value), value);
+  EXPECT_EQ(made::relaxed(kernel, 0, &value), value);
   EXPECT_EQ(kernel.energy(0, &value), 0);
 }
 

@@ -5,6 +5,7 @@
 #include "field/orientation_kernel.h"
 #include "made_graph.h"
 #include "reference.h"
+#include "relaxed.h"
 
 namespace meshgrain {
 namespace {
@@ -43,7 +44,7 @@ class PositionKernelTest : public testing::Test {
     }
     for (int sweep = 0; sweep < 5; ++sweep) {
       for (Index i = 0; i < graph.size(); ++i) {
-        result.directions[i] = kernel.relax(i, result.directions.data());
+        result.directions[i] = made::relaxed(kernel, i, result.directions.data());
       }
     }
     result.edge_length = EdgeLength(std::move(lengths));
@@ -118,7 +119,7 @@ TYPED_TEST(PositionKernelTest, RelaxesByThePapersLocalIteration) {
   std::size_t uncertain = 0;
   for (int round = 0; round < 3; ++round) {
     for (Index i = 0; i < this->graph.size(); ++i) {
-      const Vec3 got = kernel.relax(i, this->field.data());
+      const Vec3 got = made::relaxed(kernel, i, this->field.data());
       const auto expected = this->eq7(i);
       const double rho = this->frame.edge_length[i];
       if (expected.margin < 1e-4 * rho) {
@@ -159,7 +160,7 @@ TYPED_TEST(PositionKernelTest, MeasuresThePapersEnergy) {
     EXPECT_NEAR(got, expected, 1e-4 * expected) << "smooth " << smooth;
     for (int sweep = 0; sweep < 4; ++sweep) {
       for (Index i = 0; i < this->graph.size(); ++i) {
-        this->field[i] = kernel.relax(i, this->field.data());
+        this->field[i] = made::relaxed(kernel, i, this->field.data());
       }
     }
   }
@@ -188,13 +189,14 @@ TYPED_TEST(PositionKernelTest, LinesInterpolate) {
       const double rho = this->frame.edge_length[i];
       const V normal = v(this->graph.normals[i]), x = v(this->graph.positions[i]);
       const V c = v(constraints.points[i]), d = v(constraints.directions[i]);
-      const reference::Lattice start = this->lattice(i, v(free.relax(i, this->field.data())));
+      const reference::Lattice start =
+          this->lattice(i, v(made::relaxed(free, i, this->field.data())));
       const V foot = c + d * d.dot(x - c);
       const auto near = start.around(foot, 2);
       if ((near[1] - foot).norm() - (near[0] - foot).norm() < 1e-3 * rho) continue;
       const V across = normal.cross(d).normalized();
       const V moved = near[0] - strength * across * across.dot(near[0] - c);
-      const V got = v(kernel.relax(i, this->field.data()));
+      const V got = v(made::relaxed(kernel, i, this->field.data()));
       const reference::Lattice expected = this->lattice(i, moved);
       ASSERT_LT((expected.nearest(got) - got).norm(), 2e-3 * rho)
           << "strength " << strength << " node " << i;
@@ -218,8 +220,9 @@ TYPED_TEST(PositionKernelTest, PointsInterpolate) {
     constraints.points = this->graph.positions;
     const typename TestFixture::Kernel kernel(this->graph, this->frame, constraints, 3);
     for (Index i = 0; i < n; ++i) {
-      const V start = v(free.relax(i, this->field.data())), x = v(this->graph.positions[i]);
-      const V got = v(kernel.relax(i, this->field.data()));
+      const V start = v(made::relaxed(free, i, this->field.data())),
+              x = v(this->graph.positions[i]);
+      const V got = v(made::relaxed(kernel, i, this->field.data()));
       ASSERT_LT((got - ((1 - strength) * start + strength * x)).norm(),
                 2e-3 * this->frame.edge_length[i]);
     }
@@ -231,7 +234,7 @@ TYPED_TEST(PositionKernelTest, ValuesAreTheNearestOfTheirLatticeAndInThePlane) {
   for (Index i = 0; i < this->graph.size(); ++i) {
     const V x = v(this->graph.positions[i]), n = v(this->graph.normals[i]);
     for (const Vec3& value :
-         {kernel.random(i, i), kernel.relax(i, this->field.data()),
+         {kernel.random(i, i), made::relaxed(kernel, i, this->field.data()),
           kernel.prolong(i, this->graph.positions[i] + Vec3(1, 2, 3)),
           kernel.merge(i, this->field[i], this->field[(i + 1) % this->graph.size()], 0.3f)}) {
       ASSERT_NEAR(n.dot(v(value) - x), 0, 1e-5);

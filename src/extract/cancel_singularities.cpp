@@ -19,6 +19,10 @@ class Cancelling {
     const std::size_t states = map_.halfedges() * static_cast<std::size_t>(posy_);
     visits_.resize(states);
     costs_.resize(2 * states, unknown);
+    passable_.resize(map_.halfedges(), 0);
+    for (Index h = 0; h < map_.halfedges(); ++h) {
+      if (lattice_.stands_for_triangle(h)) look_again(h);
+    }
     weigh_lines();
   }
 
@@ -41,8 +45,8 @@ class Cancelling {
       }
       for (const Step& step : path.steps) {
         lattice_.set_jump(step.h, left(step.h, step.unit));
-        forget_costs(step.h);
-        forget_costs(PolygonMap::twin(step.h));
+        look_again(step.h);
+        look_again(PolygonMap::twin(step.h));
       }
       queue.push({0, start.h});  // if anything is left
     }
@@ -225,11 +229,11 @@ class Cancelling {
   /// How many irregular vertices vanish if a path ends here; nothing if it only passes, less than 0
   /// if it can do neither.
   std::optional<double> gain(const State& in, Index start) const {
+    if (passable_[in.h]) return std::nullopt;
     if (lattice_.holes[in.h]) return 0;
     if (in.h == start || map_.next(in.h) == start || map_.prev(in.h) == start) return -1;
     const Jump sum = lattice_.sum(in.h);
     if (sum.rotation != 0) return 0;
-    if (sum.is_zero()) return std::nullopt;
     const auto u = unit(in.unit);
     const LatticeMetric metric = lattice_.metric();
     const double after =
@@ -261,12 +265,14 @@ class Cancelling {
     if (!may_carry(h, carried)) return forbidden;
     return step_cost(h, carried, passing(in, h, carried));
   }
-  /// What the triangle left of h has changed.
-  void forget_costs(Index h) {
+  /// At the triangle left of h, which has changed.
+  void look_again(Index h) {
     if (lattice_.holes[h]) return;
+    const bool is_plane = lattice_.triangle(h).is_plane();
     for (int corner = 0; corner < 3; ++corner, h = map_.next(h)) {
       const std::size_t first = 2 * std::size_t{number({h, 0})};
       std::fill_n(costs_.begin() + static_cast<std::ptrdiff_t>(first), 2 * posy_, unknown);
+      passable_[h] = is_plane;
     }
   }
 
@@ -276,6 +282,7 @@ class Cancelling {
   int posy_;
   std::vector<Visit> visits_;  // of each state
   std::vector<double> costs_;  // of each state, for passing on to the left and to the right
+  std::vector<std::uint8_t> passable_;  // of each halfedge: a plane on its left ends no path
   std::vector<double> line_weight_;
   std::priority_queue<Entry> queue_;
   std::uint32_t search_ = 0;

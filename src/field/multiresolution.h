@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <numeric>
@@ -19,11 +20,12 @@ namespace meshgrain {
 template <typename K>
 concept FieldKernel = requires(const K& kernel, Index i, std::size_t entry, std::uint64_t hash,
                                const typename K::Value* field, const typename K::Value& value,
+                               std::span<const Index> nodes, typename K::Value* values,
                                const typename K::Integers* integers) {
   /// A random value, from a hash of the node.
   { kernel.random(i, hash) } -> std::same_as<typename K::Value>;
-  /// The local Gauss-Seidel step: the value of node i that fits its neighbours best.
-  { kernel.relax(i, field) } -> std::same_as<typename K::Value>;
+  /// The local Gauss-Seidel step: the value of each node that fits its neighbours best.
+  kernel.relax(nodes, field, values);
   /// The paper's energy of the edges that leave node i.
   { kernel.energy(i, field) } -> std::same_as<double>;
   /// The value of a node of a neighbouring level, for node i.
@@ -141,12 +143,13 @@ class Multiresolution {
 
  private:
   static constexpr std::size_t grain = 2048;
+  static constexpr std::size_t at_once = 16;  // nodes, as many as the widest SIMD units have lanes
 
   int coarsest() const { return static_cast<int>(hierarchy_.levels.size()) - 1; }
   const Graph& graph() const { return hierarchy_.levels[static_cast<std::size_t>(level_)]; }
 
   void enter_level() {
-    if (options_.schedule == Schedule::blocks) coloring_ = color_blocks(graph());
+    if (options_.schedule != Schedule::random_order) coloring_ = color_blocks(graph());
   }
 
   bool is_active(std::size_t i) const {
@@ -155,35 +158,32 @@ class Multiresolution {
 
   void sweep(const Context& context) {
     const Kernel& kernel = kernels_[static_cast<std::size_t>(level_)];
-    const std::size_t n = values_.size();
-    if (options_.schedule == Schedule::jacobi) {
-      std::vector<Value> next(n);
-      context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          next[i] = is_active(i) ? kernel.relax(static_cast<Index>(i), values_.data()) : values_[i];
-        }
-      });
-      values_.swap(next);
-    } else {
-      visit(
-          [&](Index i) {
-            if (is_active(i)) values_[i] = kernel.relax(i, values_.data());
-          },
-          context);
-    }
+    const bool in_place = options_.schedule != Schedule::jacobi;
+    std::vector<Value> next;
+    if (!in_place) next = values_;
+    Value* results = in_place ? values_.data() : next.data();
+    visit(
+        [&](std::span<const Index> nodes) {
+          std::array<Value, at_once> values;
+          kernel.relax(nodes, values_.data(), values.data());
+          for (std::size_t k = 0; k < nodes.size(); ++k) results[nodes[k]] = values[k];
+        },
+        context);
+    if (!in_place) values_.swap(next);
   }
 
   void sweep_frozen(const Context& context) {
     visit(
-        [&](Index i) {
-          if (is_active(i)) {
+        [&](std::span<const Index> nodes) {
+          for (const Index i : nodes) {
             values_[i] = kernels_[0].relax_frozen(i, values_.data(), integers_.data());
           }
         },
         context);
   }
 
-  /// Calls `body` for every node, in the order of the schedule.
+  /// Calls `body` for every node that is active, in the order of the schedule, with up to `at_once`
+  /// of them that are no neighbours of each other.
   template <typename Body>
   void visit(const Body& body, const Context& context) {
     const std::size_t n = values_.size();
@@ -192,19 +192,25 @@ class Multiresolution {
       const std::uint64_t round = hash64(options_.seed + 1, ++rounds_);
       for (std::size_t i = 0; i < n; ++i) order[i] = {hash64(round, i), static_cast<Index>(i)};
       std::sort(order.begin(), order.end());
-      for (const auto& [hash, i] : order) body(i);
+      for (const auto& [hash, i] : order) {
+        if (is_active(i)) body(std::span(&i, 1));
+      }
       return;
     }
-    if (options_.schedule == Schedule::jacobi) {
-      for (Index i = 0; i < n; ++i) body(i);
-      return;
-    }
+    // Every block of a few goes on by one node, then all of them by the next one.
+    const auto threads = static_cast<std::size_t>(context.threads());
     for (const std::vector<Index>& blocks : coloring_.colors) {
-      context.for_ranges(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t b = begin; b < end; ++b) {
-          const std::size_t first = blocks[b] * BlockColoring::block_size;
-          const std::size_t last = std::min(n, first + BlockColoring::block_size);
-          for (std::size_t i = first; i < last; ++i) body(static_cast<Index>(i));
+      const std::size_t each =
+          std::clamp<std::size_t>((blocks.size() + threads - 1) / threads, 1, at_once);
+      context.for_ranges(blocks.size(), each, [&](std::size_t begin, std::size_t end) {
+        std::array<Index, at_once> nodes;
+        for (std::size_t place = 0; place < BlockColoring::block_size; ++place) {
+          std::size_t count = 0;
+          for (std::size_t b = begin; b < end; ++b) {
+            const std::size_t i = blocks[b] * BlockColoring::block_size + place;
+            if (i < n && is_active(i)) nodes[count++] = static_cast<Index>(i);
+          }
+          if (count > 0) body(std::span<const Index>(nodes.data(), count));
         }
       });
     }

@@ -2,17 +2,11 @@
 
 #include <complex>
 
+#include "field/relax_orientations.h"
 #include "field/rosy.h"
-#include "meshgrain/fields.h"
 #include "util/hash.h"
 
 namespace meshgrain {
-
-/// Constraints of one level, dense: strength 0 where there is none. Empty if the level has none.
-struct DirectionConstraints {
-  std::vector<Vec3> directions;
-  std::vector<float> strengths;
-};
 
 /// One node's part of an orientation field (section 3.2): the energies of Eq. 2 and 4, and that of
 /// Knöppel et al., for every N-RoSy. The value is the representative vector; its length is 1 but
@@ -34,34 +28,12 @@ class OrientationKernel {
     return std::cos(angle) * u + std::sin(angle) * n.cross(u);
   }
 
-  /// Eq. 3: the integers of each edge are chosen just before its neighbour is added, against the
-  /// sum so far. The sum's length does not matter to the choice, so it is normalised once, at the
-  /// end.
-  Vec3 relax(Index i, const Vec3* field) const {
-    const Vec3& n = graph_->normals[i];
+  /// Eq. 3, for nodes that are no neighbours of each other.
+  void relax(std::span<const Index> nodes, const Vec3* field, Vec3* values) const {
     if constexpr (E == OrientationEnergy::convex) {
-      return constrain(i, convex_mean(i, field));
+      for (const Index i : nodes) *values++ = constrain(i, convex_mean(i, field));
     } else {
-      Vec3 sum = field[i];
-      bool first = true;
-      for (Index e = graph_->offsets[i]; e < graph_->offsets[i + 1]; ++e) {
-        const Index j = graph_->neighbors[e];
-        const float w = graph_->weight(e);
-        Vec3 matched, neighbor;
-        if constexpr (E == OrientationEnergy::extrinsic) {
-          const Rotations k = Group::match_extrinsic(sum, n, field[j], graph_->normals[j]);
-          matched = Group::rotate(sum, n, k.i);
-          neighbor = Group::rotate(field[j], graph_->normals[j], k.j);
-        } else {
-          const Vec3 oji = transport(field[j], graph_->normals[j], n);
-          matched = sum;
-          neighbor = Group::rotate(oji, n, Group::match_intrinsic(sum, n, oji));
-        }
-        sum = first ? Vec3(w * neighbor) : Vec3(matched + w * neighbor);
-        sum = project_to_plane(sum, n);
-        first = false;
-      }
-      return constrain(i, normalized_or(sum, field[i]));
+      relax_orientations(*graph_, *constraints_, N, E, nodes, field, values);
     }
   }
 

@@ -1,23 +1,11 @@
 #pragma once
 
 #include "field/posy.h"
+#include "field/relax_positions.h"
 #include "meshgrain/fields.h"
 #include "util/hash.h"
 
 namespace meshgrain {
-
-/// Constraints of one level, dense: strength 0 where there is none. Empty if the level has none.
-struct LineConstraints {
-  std::vector<Vec3> points;
-  std::vector<Vec3> directions;  // zero: the point itself
-  std::vector<float> strengths;
-};
-
-/// What a position field on one level is made over.
-struct LatticeFrame {
-  std::vector<Vec3> directions;
-  EdgeLength edge_length;
-};
 
 /// One node's part of a position field (section 3.3): the energies of Eq. 5 and 6 for both
 /// lattices. The value is the lattice point nearest to the node.
@@ -39,31 +27,9 @@ class PositionKernel {
     return nearest(i, graph_->positions[i] + extent_ * (a * u + b * n.cross(u)));
   }
 
-  /// Eq. 7: running weighted mean of the neighbours' matched positions, rounded at the end.
-  Vec3 relax(Index i, const Vec3* field) const {
-    const Vec3 &x = graph_->positions[i], &n = graph_->normals[i];
-    PoSy<S> lattice = lattice_at(i, field);  // through the mean so far
-    Vec3& mean = lattice.p;
-    float total = 0;
-    for (Index e = graph_->offsets[i]; e < graph_->offsets[i + 1]; ++e) {
-      const Index j = graph_->neighbors[e];
-      const float w = graph_->weight(e);
-      Vec3 own, other;
-      if constexpr (E == PositionEnergy::extrinsic) {
-        const PoSy<S> neighbor = lattice_at(j, field);
-        const Vec3 q = intermediate_position(x, n, graph_->positions[j], graph_->normals[j]);
-        const Translations t = match_lattices(lattice, neighbor, q);
-        own = lattice.point(t.i);
-        other = neighbor.point(t.j);
-      } else {
-        own = mean;
-        other = shifted(i, j, field, lattice);
-      }
-      mean = (total * own + w * other) / (total + w);
-      mean = project(i, mean);
-      total += w;
-    }
-    return nearest(i, constrain(i, mean));
+  /// Eq. 7, for nodes that are no neighbours of each other.
+  void relax(std::span<const Index> nodes, const Vec3* field, Vec3* values) const {
+    relax_positions(*graph_, *frame_, *constraints_, S, E, nodes, field, values);
   }
 
   double energy(Index i, const Vec3* field) const {
@@ -153,13 +119,6 @@ class PositionKernel {
     const Vec3 &ni = graph_->normals[i], &nj = graph_->normals[j];
     const Vec3 q = intermediate_position(graph_->positions[i], ni, graph_->positions[j], nj);
     return project(i, q + transport(field[j] - q, nj, ni));
-  }
-
-  /// T(p_ji, n_i, o_i, t_ij): of the lattice of i put through p_ji, the point nearest to p_i.
-  Vec3 shifted(Index i, Index j, const Vec3* field, PoSy<S> lattice) const {
-    const Vec3 own = lattice.p;
-    lattice.p = unfolded(i, j, field);
-    return lattice.point(lattice.round(own));
   }
 
   std::pair<Vec3, Vec3> matched_pair(Index i, std::size_t entry, const Vec3* field,

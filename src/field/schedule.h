@@ -7,9 +7,9 @@
 namespace meshgrain {
 
 /// Nodes in blocks of consecutive indices, the blocks in groups ("colours") such that no two of a
-/// group are neighbours. Blocks of a group can be swept at once, each in the order of its nodes:
-/// the result is the same for any number of threads, and a block stays in the cache while it is
-/// swept.
+/// group are neighbours. Blocks of a group can be swept at once, each in the order of its nodes,
+/// by different threads or in different SIMD lanes: the result is the same for any number of
+/// either.
 struct BlockColoring {
   static constexpr std::size_t block_size = 512;
   std::vector<std::vector<Index>> colors;  // the blocks of each colour
