@@ -1,5 +1,7 @@
 #include "extract/cancel_singularities.h"
 
+#include <tbb/cache_aligned_allocator.h>
+
 #include <algorithm>
 #include <limits>
 #include <queue>
@@ -74,8 +76,8 @@ class Cancelling {
   };
   struct Visit {
     double cost = 0;
-    std::uint32_t parent = 0;             // the number of a state
-    std::uint32_t reached = 0, done = 0;  // the search in which this was so
+    std::uint32_t parent = 0;  // the number of a state
+    std::uint32_t when = 0;    // twice the search in which this was so; one more once it is settled
   };
   struct Entry {
     double cost;
@@ -166,8 +168,8 @@ class Cancelling {
   void visit(double cost, const State& to, std::uint32_t parent) {
     const std::uint32_t id = number(to);
     Visit& visit = visits_[id];
-    if (visit.reached == search_ && visit.cost <= cost) return;
-    visit = {cost, parent, search_, visit.done};
+    if (visit.when >= 2 * search_ && visit.cost <= cost) return;
+    visit = {cost, parent, 2 * search_};
     queue_.push({cost, id});
   }
 
@@ -202,8 +204,8 @@ class Cancelling {
       const Entry entry = queue_.top();
       queue_.pop();
       Visit& found = visits_[entry.state];
-      if (found.done == search_ || entry.cost > found.cost) continue;
-      found.done = search_;
+      if (found.when > 2 * search_ || entry.cost > found.cost) continue;
+      found.when = 2 * search_ + 1;
       if (entry.cost >= best.cost * (here + 2)) break;
       const State in = state(entry.state);
       const std::optional<double> there = gain(in, start);
@@ -280,8 +282,11 @@ class Cancelling {
   const PolygonMap& map_;
   double limit_;
   int posy_;
-  std::vector<Visit> visits_;  // of each state
-  std::vector<double> costs_;  // of each state, for passing on to the left and to the right
+  // What a search waits for is memory: aligned, so that all states of a halfedge are in one line.
+  template <typename T>
+  using Aligned = std::vector<T, tbb::cache_aligned_allocator<T>>;
+  Aligned<Visit> visits_;  // of each state
+  Aligned<double> costs_;  // of each state, for passing on to the left and to the right
   std::vector<std::uint8_t> passable_;  // of each halfedge: a plane on its left ends no path
   std::vector<double> line_weight_;
   std::priority_queue<Entry> queue_;
