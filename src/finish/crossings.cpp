@@ -13,41 +13,65 @@ namespace meshgrain {
 namespace {
 
 using Corners = std::array<Index, 3>;
+using Points = std::array<Eigen::Vector3d, 3>;
+
+struct Triangle {
+  Corners corners;
+  Points points;
+  Eigen::Vector3d normal;  // twice as long as the area
+};
 
 /// The triangles of a face: of a quad, those on either side of both diagonals.
-template <typename Body>
-void for_each_triangle(std::span<const Index> face, const Body& body) {
-  for (std::size_t k = 2; k < face.size(); ++k) body(Corners{face[0], face[k - 1], face[k]});
-  if (face.size() != 4) return;
-  body(Corners{face[1], face[2], face[3]});
-  body(Corners{face[1], face[3], face[0]});
+std::vector<Triangle> triangles_of(const Mesh& mesh, Index f) {
+  const std::span<const Index> face = mesh.faces[f];
+  std::vector<Triangle> triangles;
+  triangles.reserve(face.size());
+  const auto add = [&](const Corners& corners) {
+    Triangle& t = triangles.emplace_back();
+    t.corners = corners;
+    for (int k = 0; k < 3; ++k) t.points[k] = mesh.positions[corners[k]].cast<double>();
+    t.normal = (t.points[1] - t.points[0]).cross(t.points[2] - t.points[0]);
+  };
+  for (std::size_t k = 2; k < face.size(); ++k) add({face[0], face[k - 1], face[k]});
+  if (face.size() == 4) {
+    add({face[1], face[2], face[3]});
+    add({face[1], face[3], face[0]});
+  }
+  return triangles;
 }
 
 // Faces are taken a little larger than they are, so that what only touches counts too.
 constexpr double margin = 1e-3;
 
-using Points = std::array<Eigen::Vector3d, 3>;
+/// Of the corners of a triangle over the plane of another, times the length of its normal.
+using Heights = std::array<double, 3>;
+Heights heights(const Triangle& triangle, const Triangle& plane) {
+  Heights result;
+  for (int k = 0; k < 3; ++k) result[k] = plane.normal.dot(triangle.points[k] - plane.points[0]);
+  return result;
+}
 
-/// Whether a triangle lies on one side of the plane through the first point of `plane`.
-bool beside(const Points& triangle, const Points& plane, const Eigen::Vector3d& normal) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const Eigen::Vector3d& p : triangle) {
-    const double height = normal.dot(p - plane[0]);
-    low = std::min(low, height);
-    high = std::max(high, height);
-  }
+/// Whether a triangle lies on one side.
+bool beside(const Heights& heights) {
+  const auto [low, high] = std::minmax({heights[0], heights[1], heights[2]});
   const double more = margin * (high - low);
   return low - more > 0 || high + more < 0;
 }
 
-/// How far the nearer end of a segment lies beyond a triangle that it passes through, else 0.
-double depth(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Points& triangle,
-             const Eigen::Vector3d& normal) {
-  const Eigen::Vector3d u = triangle[1] - triangle[0], v = triangle[2] - triangle[0];
+/// How far the nearer end of an edge of one triangle lies beyond another that it passes through,
+/// else 0. `over` are the heights of the former over the latter.
+double depth(const Triangle& of, int edge, const Heights& over, const Triangle& triangle) {
+  const double from = over[edge], to = over[(edge + 1) % 3];
+  const double closest = 2 * margin * std::abs(to - from);  // most edges are far from that
+  if (std::min(from, to) > closest || std::max(from, to) < -closest) return 0;
+  const Eigen::Vector3d &p = of.points[edge], &q = of.points[(edge + 1) % 3];
+  const Eigen::Vector3d& normal = triangle.normal;
   const Eigen::Vector3d more = margin * (q - p);
-  const Eigen::Vector3d s = p - more - triangle[0], t = q + more - triangle[0];
+  const Eigen::Vector3d s = p - more - triangle.points[0], t = q + more - triangle.points[0];
   const double ds = normal.dot(s), dt = normal.dot(t);
   if (!(ds * dt < 0)) return 0;
+  const Eigen::Vector3d u = triangle.points[1] - triangle.points[0];
+  const Eigen::Vector3d v = triangle.points[2] - triangle.points[0];
   const Eigen::Vector3d x = s + ds / (ds - dt) * (t - s);
   const double outside = -margin * normal.squaredNorm();
   if (normal.dot(u.cross(x)) < outside || normal.dot((v - u).cross(x - u)) < outside ||
@@ -57,35 +81,63 @@ double depth(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Points& t
   return std::min(std::abs(ds), std::abs(dt)) / normal.norm();
 }
 
-double triangle_penetration(const std::vector<Vec3>& positions, const Corners& t,
-                            const Corners& u) {
+double penetration(const Triangle& a, const Triangle& b) {
   int shared = 0, own = 0, other = 0;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      if (t[i] != u[j]) continue;
+      if (a.corners[i] != b.corners[j]) continue;
       ++shared;
       own = i;
       other = j;
     }
   }
   if (shared > 1) return 0;
-  Points a, b;
-  for (int k = 0; k < 3; ++k) {
-    a[k] = positions[t[k]].cast<double>();
-    b[k] = positions[u[k]].cast<double>();
-  }
-  const auto normal_of = [](const Points& p) -> Eigen::Vector3d {
-    return (p[1] - p[0]).cross(p[2] - p[0]);
-  };
-  const Eigen::Vector3d normal_a = normal_of(a), normal_b = normal_of(b);
-  const auto edge_of_a = [&](int k) { return depth(a[k], a[(k + 1) % 3], b, normal_b); };
-  const auto edge_of_b = [&](int k) { return depth(b[k], b[(k + 1) % 3], a, normal_a); };
+  const Heights b_over_a = heights(b, a), a_over_b = heights(a, b);
   // At a shared corner only the edges opposite of it can pass through.
-  if (shared == 1) return edge_of_a((own + 1) % 3) + edge_of_b((other + 1) % 3);
-  if (beside(b, a, normal_a) || beside(a, b, normal_b)) return 0;
+  if (shared == 1) {
+    return depth(a, (own + 1) % 3, a_over_b, b) + depth(b, (other + 1) % 3, b_over_a, a);
+  }
+  if (beside(b_over_a) || beside(a_over_b)) return 0;
   double sum = 0;
-  for (int k = 0; k < 3; ++k) sum += edge_of_a(k) + edge_of_b(k);
+  for (int k = 0; k < 3; ++k) sum += depth(a, k, a_over_b, b) + depth(b, k, b_over_a, a);
   return sum;
+}
+
+/// Whether a plane parts two faces, but for the corners that they share: so most neighbours lie,
+/// and this is a small part of the work of comparing their triangles.
+bool are_parted(const Mesh& mesh, std::span<const Index> f, std::span<const Index> g) {
+  const auto is_in = [](std::span<const Index> face, Index v) {
+    return std::ranges::find(face, v) != face.end();
+  };
+  std::array<Index, 2> shared{no_index, no_index};
+  std::size_t count = 0;
+  Vec3 across = Vec3::Zero();  // the direction from one to the other
+  for (const Index v : f) {
+    across -= mesh.positions[v] / static_cast<float>(f.size());
+    if (!is_in(g, v)) continue;
+    if (count == shared.size()) return false;
+    shared[count++] = v;
+  }
+  for (const Index v : g) across += mesh.positions[v] / static_cast<float>(g.size());
+  const Vec3& origin = mesh.positions[count > 0 ? shared[0] : f[0]];
+  if (count == 2) {
+    const Vec3 edge = mesh.positions[shared[1]] - origin;
+    across -= edge * (edge.dot(across) / std::max(edge.squaredNorm(), 1e-30f));
+  }
+  const auto range = [&](std::span<const Index> face, std::span<const Index> other) {
+    std::array<float, 2> result{std::numeric_limits<float>::infinity(),
+                                -std::numeric_limits<float>::infinity()};
+    for (const Index v : face) {
+      if (is_in(other, v)) continue;
+      const float height = across.dot(mesh.positions[v] - origin);
+      result = {std::min(result[0], height), std::max(result[1], height)};
+    }
+    return result;
+  };
+  const auto [f_low, f_high] = range(f, g);
+  const auto [g_low, g_high] = range(g, f);
+  const float clear = 10 * static_cast<float>(margin) * (g_high - f_low);
+  return count == 0 ? g_low - f_high > clear : f_high < -clear && g_low > clear;
 }
 
 }  // namespace
@@ -98,11 +150,12 @@ Eigen::AlignedBox3f face_box(const Mesh& mesh, Index f) {
 
 double penetration(const Mesh& mesh, Index f, Index g) {
   if (f == g || !face_box(mesh, f).intersects(face_box(mesh, g))) return 0;
+  if (are_parted(mesh, mesh.faces[f], mesh.faces[g])) return 0;
+  const std::vector<Triangle> own = triangles_of(mesh, f), other = triangles_of(mesh, g);
   double sum = 0;
-  for_each_triangle(mesh.faces[f], [&](const Corners& t) {
-    for_each_triangle(mesh.faces[g],
-                      [&](const Corners& u) { sum += triangle_penetration(mesh.positions, t, u); });
-  });
+  for (const Triangle& t : own) {
+    for (const Triangle& u : other) sum += penetration(t, u);
+  }
   return sum;
 }
 

@@ -130,17 +130,21 @@ double LocalSearch::lack(Index v, double limit) const {
     sum += 0.1 * uneven * uneven;
   }
   for (const Index f : around_[v]) {
-    if (sum < limit) sum += crossing(f);
+    if (sum < limit) sum += crossing(f, limit - sum);
   }
   return sum;
 }
 
-double LocalSearch::crossing(Index f) const {
+/// From `limit` on it need not be exact.
+double LocalSearch::crossing(Index f, double limit) const {
   if (!is_rival_[f]) return 0;
+  const Eigen::AlignedBox3f box = face_box(mesh_, f);
   double sum = 0;
-  for (const Index g : near_) {
+  for (const auto& [g, near_box] : near_) {
+    if (near_box && !box.intersects(*near_box)) continue;
     const double deep = penetration(mesh_, f, g);
     if (deep > 0) sum += 1 + 20 * deep / std::sqrt(mean_area_);
+    if (sum >= limit) break;
   }
   return sum;
 }
@@ -152,7 +156,10 @@ void LocalSearch::find_near(Index v, float distance) {
   for (const Index f : around_[v]) box.extend(face_box(mesh_, f));
   const Eigen::AlignedBox3f wide(box.min().array() - distance, box.max().array() + distance);
   for (const Index g : rivals_) {
-    if (wide.intersects(face_box(mesh_, g))) near_.push_back(g);
+    const Eigen::AlignedBox3f near_box = face_box(mesh_, g);
+    if (!wide.intersects(near_box)) continue;
+    const bool moves = std::ranges::binary_search(around_[v], g);
+    near_.push_back({g, moves ? std::nullopt : std::optional(near_box)});
   }
 }
 

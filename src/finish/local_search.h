@@ -1,6 +1,8 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -44,13 +46,18 @@ class LocalSearch {
   void touch(Index v) { moved_[v] = ++now_; }
 
  private:
+  struct Rival {
+    Index face;
+    std::optional<Eigen::AlignedBox3f> box;  // none if it moves with the vertex being tried
+  };
+
   bool has_news(Index v) const;
   bool improve(Index v);
   float quality_here(Index f) const;
   double lack(Index v, double limit) const;
   /// The rivals that the faces around v may meet when it moves by up to a distance.
   void find_near(Index v, float distance);
-  double crossing(Index f) const;
+  double crossing(Index f, double limit) const;
 
   Mesh& mesh_;
   const VertexFaces& around_;
@@ -60,7 +67,7 @@ class LocalSearch {
   float mean_area_ = 0;
   std::vector<Index> rivals_;                 // see keep_apart()
   std::vector<std::uint8_t> is_rival_;        // of each face
-  std::vector<Index> near_;                   // see find_near(), of the vertex being tried
+  std::vector<Rival> near_;                   // see find_near(), of the vertex being tried
   std::uint32_t now_ = 0;                     // counts tries and moves
   std::vector<std::uint32_t> tried_, moved_;  // when each vertex last was
 };

@@ -30,8 +30,11 @@ class Mending {
       const auto crossings = find_crossings(mesh_, context_);
       if (crossings.empty()) break;
       std::size_t tried = 0;
+      // Each of the many pairs in a place that cannot be mended has about the same place.
+      std::vector<std::size_t> failed(mesh_.faces.size(), 0);
       for (const auto& [f, g] : crossings) {
-        if (inherent[f] || inherent[g] || penetration(mesh_, f, g) == 0) continue;
+        if (inherent[f] || inherent[g] || std::min(failed[f], failed[g]) >= tries) continue;
+        if (penetration(mesh_, f, g) == 0) continue;
         Place place = around(f, g, rings);
         if (surface_crosses(place)) {
           inherent[f] = inherent[g] = 1;
@@ -39,7 +42,9 @@ class Mending {
         }
         if (++tried > most_tried) break;
         --place.crossings;
-        if (!part(place)) restore(place);
+        if (part(place)) continue;
+        restore(place);
+        for (const Index h : place.faces) ++failed[h];
       }
     }
     search_.keep_apart({});
@@ -70,6 +75,7 @@ class Mending {
   static constexpr std::size_t most_crossings_to_slide = 25;
   // A mesh with more bad places is too coarse for its surface: no need to try for minutes.
   static constexpr std::size_t most_tried = 50;
+  static constexpr std::size_t tries = 6;              // that a face takes part in without success
   static constexpr std::size_t most_searched = 20000;  // faces of the surface in a place
 
   Place around(Index f, Index g, int rings) const {
