@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "border/border_faces.h"
+#include "border/border_slots.h"
 #include "border/collar.h"
 #include "border/match_loop.h"
 #include "extract/collect_faces.h"
@@ -16,32 +17,6 @@
 
 namespace meshgrain {
 namespace {
-
-/// The slots of a border that an extracted one is to have vertices at, as places among its locked
-/// vertices.
-using Slots = std::vector<double>;
-
-Slots all_slots(const BorderLoop& loop) {
-  Slots slots(loop.locked.size());
-  for (std::size_t k = 0; k < slots.size(); ++k) slots[k] = static_cast<double>(k);
-  return slots;
-}
-
-/// Every second one from `start`, but at least three. What an odd number leaves over is between the
-/// first two.
-Slots second_slots(const BorderLoop& loop, std::size_t start) {
-  const std::size_t count = loop.locked.size();
-  std::vector<std::size_t> gaps(std::max<std::size_t>(3, (count + 1) / 2), 2);
-  for (std::size_t k = 0; k < 2 * gaps.size() - count; ++k) gaps[k] = 1;
-  Slots slots;
-  std::size_t place = start;
-  for (const std::size_t gap : gaps) {
-    slots.push_back(static_cast<double>(place % count));
-    place += gap;
-  }
-  std::ranges::sort(slots);
-  return slots;
-}
 
 class BorderLock {
  public:
@@ -125,7 +100,7 @@ class BorderLock {
   /// Where the vertices of a rim are, in order around it.
   std::vector<BorderPoint> points_of(const Rim& rim) const {
     constexpr double of_corner = 20;
-    const auto period = static_cast<double>(borders_.loops[rim.loop].locked.size());
+    const double whole = period(rim);
     std::vector<BorderPoint> points;
     double around = 0;
     for (const Index h : rim.halfedges) {
@@ -133,18 +108,18 @@ class BorderLock {
       double place = points.empty() ? 0 : points.back().place;
       for (const auto& p : places_of(h)) {
         if (p.loop != rim.loop) continue;
-        const double step = points.empty() ? p.place : std::remainder(p.place - place, period);
+        const double step = points.empty() ? p.place : std::remainder(p.place - place, whole);
         place += step;
         if (!points.empty()) around += step;
         break;
       }
       points.push_back({place, corner ? of_corner : 1});
     }
-    around += std::remainder(points[0].place - points.back().place, period);
-    if (std::abs(around - period) < 0.5) return points;
+    around += std::remainder(points[0].place - points.back().place, whole);
+    if (std::abs(around - whole) < 0.5) return points;
     // Out of order: evenly.
     for (std::size_t k = 0; k < points.size(); ++k) {
-      points[k] = {period * static_cast<double>(k) / static_cast<double>(points.size()), 1};
+      points[k] = {whole * static_cast<double>(k) / static_cast<double>(points.size()), 1};
     }
     return points;
   }
@@ -180,57 +155,15 @@ class BorderLock {
   }
 
   LoopMatch choose_slots(Rim& rim) const {
-    const BorderLoop& loop = borders_.loops[rim.loop];
     const std::vector<BorderPoint> points = points_of(rim);
-    const auto match = [&](const Slots& slots) { return match_loop(points, slots, period(rim)); };
-    if (faces_ != OutputFaces::quads) {
-      rim.slots = all_slots(loop);
-      return match(rim.slots);
-    }
     LoopMatch best;
-    for (const std::size_t start : starts(loop, points)) {
-      Slots slots = second_slots(loop, start);
-      LoopMatch found = match(slots);
+    for (Slots& slots : slot_choices(borders_.loops[rim.loop], points, graph_, faces_)) {
+      LoopMatch found = match_loop(points, slots, period(rim));
       if (!rim.slots.empty() && found.cost >= best.cost) continue;
       best = std::move(found);
       rim.slots = std::move(slots);
     }
     return best;
-  }
-
-  /// Where to begin with every second vertex: of an odd number, at a long edge of each part between
-  /// two corners.
-  std::vector<std::size_t> starts(const BorderLoop& loop,
-                                  const std::vector<BorderPoint>& points) const {
-    const std::size_t count = loop.locked.size();
-    if (count % 2 == 0)
-      return count > 4 ? std::vector<std::size_t>{0, 1} : std::vector<std::size_t>{0, 1, 2, 3};
-    std::vector<std::size_t> corners;
-    for (const BorderPoint& point : points) {
-      const auto place = static_cast<std::ptrdiff_t>(std::lround(point.place));
-      const auto round = static_cast<std::ptrdiff_t>(count);
-      if (point.weight > 1)
-        corners.push_back(static_cast<std::size_t>(((place % round) + round) % round));
-    }
-    std::ranges::sort(corners);
-    constexpr std::size_t most = 16;
-    if (corners.size() > most) corners.resize(most);
-    if (corners.empty()) corners.push_back(0);
-    std::vector<std::size_t> result;
-    for (std::size_t c = 0; c < corners.size(); ++c) {
-      const std::size_t end = c + 1 < corners.size() ? corners[c + 1] : corners[0] + count;
-      std::size_t best = corners[c];
-      float longest = 0;
-      for (std::size_t k = corners[c]; k < end; ++k) {
-        const Vec3& p = graph_.positions[loop.locked[k % count]];
-        const float length = (graph_.positions[loop.locked[(k + 1) % count]] - p).norm();
-        if (length <= 1.0001f * longest) continue;
-        longest = length;
-        best = k % count;
-      }
-      result.push_back(best);
-    }
-    return result;
   }
 
   /// Merges vertices that have the same slot. Returns whether all of them could be.
@@ -240,7 +173,6 @@ class BorderLock {
     for (std::size_t k = 0; k < rim.halfedges.size();) {
       const bool last = k + 1 == rim.halfedges.size();
       const std::ptrdiff_t next = last ? match.slots[0] + count : match.slots[k + 1];
-      const std::size_t other = last ? 0 : k + 1;
       if (match.slots[k] != next || rim.halfedges.size() <= 3) {
         all = all && match.slots[k] != next;
         ++k;
@@ -256,7 +188,7 @@ class BorderLock {
       if (last) {
         match.slots.pop_back();
       } else {
-        match.slots.erase(match.slots.begin() + static_cast<std::ptrdiff_t>(other));
+        match.slots.erase(match.slots.begin() + static_cast<std::ptrdiff_t>(k + 1));
       }
     }
     return all;
