@@ -58,7 +58,7 @@ BorderSpacing border_spacing(const BorderLoops& borders, const Graph& graph, dou
     lengths[j] = lengths[i];
     return true;
   };
-  spread(graph, distances, std::move(sources), go_on, context);
+  spread(graph, distances, sources, 1, go_on, context);
   return result;
 }
 

@@ -154,7 +154,7 @@ EdgeLength graded(const Graph& graph, const EdgeLength& lengths, double growth,
     result[j] = most;
     return true;
   };
-  spread(graph, result, std::move(sources), shorten, context);
+  spread(graph, result, sources, static_cast<float>(growth), shorten, context);
   return EdgeLength(std::move(result));
 }
 

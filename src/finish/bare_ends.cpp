@@ -38,7 +38,7 @@ Ways ways_from_vertices(const Extraction& extraction, const Graph& graph, const 
     const float farther = ways.length[i] + (graph.positions[j] - graph.positions[i]).norm();
     return reach(j, farther, ways.vertex[i], i);
   };
-  spread(graph, ways.length, std::move(sources), go_on, context);
+  spread(graph, ways.length, sources, 1, go_on, context);
   return ways;
 }
 

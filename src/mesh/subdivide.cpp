@@ -2,51 +2,49 @@
 #include <array>
 #include <utility>
 
-#include "mesh/vertex_faces.h"
 #include "meshgrain/error.h"
 #include "meshgrain/surface.h"
+#include "util/edge_of.h"
+#include "util/sort_unique.h"
 
 namespace meshgrain {
 namespace {
 
-/// Ids of the midpoints of all long edges, one a (undirected) edge: for each vertex the list of
-/// longer-indexed ends of its long edges, sorted; the id is the place in the list of all.
-struct Midpoints {
-  std::vector<Index> offsets;
-  std::vector<Index> ends;
+/// The edges that are too long, the smaller index first, sorted: the midpoint of each has its place
+/// there as its number.
+using LongEdges = std::vector<std::array<Index, 2>>;
 
-  Index find(Index a, Index b) const {
-    if (a > b) std::swap(a, b);
-    const auto begin = ends.begin() + offsets[a], end = ends.begin() + offsets[a + 1];
-    const auto it = std::lower_bound(begin, end, b);
-    return it != end && *it == b ? static_cast<Index>(it - ends.begin()) : no_index;
-  }
-};
+Index find(const LongEdges& edges, Index a, Index b) {
+  const auto it = std::ranges::lower_bound(edges, edge_of(a, b));
+  return it != edges.end() && *it == edge_of(a, b) ? static_cast<Index>(it - edges.begin())
+                                                   : no_index;
+}
 
 /// `limit(a, b)`: the longest that the edge between two vertices may be.
 template <typename Limit>
-Midpoints long_edges(const Mesh& mesh, const Limit& limit) {
-  const VertexFaces around = vertex_faces(mesh);
-  Midpoints result;
-  result.offsets.reserve(mesh.positions.size() + 1);
-  result.offsets.push_back(0);
-  std::vector<Index> others;
-  for (Index a = 0; a < mesh.positions.size(); ++a) {
-    others.clear();
-    for (const Index f : around[a]) {
-      for (const Index b : mesh.faces[f]) {
-        if (b <= a) continue;
-        const float longest = limit(a, b);
-        if ((mesh.positions[b] - mesh.positions[a]).squaredNorm() > longest * longest) {
-          others.push_back(b);
-        }
+bool is_long(const Mesh& mesh, const Limit& limit, Index a, Index b) {
+  const float longest = limit(a, b);
+  return (mesh.positions[b] - mesh.positions[a]).squaredNorm() > longest * longest;
+}
+
+template <typename Limit>
+LongEdges long_edges(const Mesh& mesh, const Limit& limit, const Context& context) {
+  constexpr std::size_t grain = 8192;
+  const std::size_t count = mesh.faces.size();
+  std::vector<LongEdges> found((count + grain - 1) / grain);
+  context.for_ranges(count, grain, [&](std::size_t begin, std::size_t end) {
+    LongEdges& edges = found[begin / grain];
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto face = mesh.faces[f];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Index a = face[k], b = face[(k + 1) % 3];
+        if (is_long(mesh, limit, a, b)) edges.push_back(edge_of(a, b));
       }
     }
-    std::sort(others.begin(), others.end());
-    others.erase(std::unique(others.begin(), others.end()), others.end());
-    result.ends.insert(result.ends.end(), others.begin(), others.end());
-    result.offsets.push_back(static_cast<Index>(result.ends.size()));
-  }
+  });
+  LongEdges result;
+  for (const LongEdges& edges : found) result.insert(result.end(), edges.begin(), edges.end());
+  sort_unique(result);
   return result;
 }
 
@@ -60,12 +58,12 @@ void append_midpoint(Mesh& mesh, Index a, Index b) {
 }
 
 /// Splits marked edges at their midpoints, which have the numbers from `first` on.
-void split_marks(const Midpoints& midpoints, Index first, Mesh& mesh) {
+void split_marks(const LongEdges& edges, Index first, Mesh& mesh) {
   auto& marks = mesh.marked_edges;
   const std::size_t count = marks.size();
   for (std::size_t e = 0; e < count; ++e) {
     const auto [a, b] = marks[e];
-    const Index id = midpoints.find(a, b);
+    const Index id = find(edges, a, b);
     if (id == no_index) continue;
     marks[e] = {a, first + id};
     marks.push_back({first + id, b});
@@ -117,34 +115,31 @@ bool split_long_edges(Mesh& mesh, const Limit& limit, const Split& on_split,
   // Each round halves what is too long, so 64 rounds pass any finite length in single precision.
   for (int round = 0; round < 64; ++round) {
     context.check();
-    const Midpoints midpoints = long_edges(mesh, limit);
-    if (midpoints.ends.empty()) return round > 0;
+    const LongEdges edges = long_edges(mesh, limit, context);
+    if (edges.empty()) return round > 0;
     const auto old_count = static_cast<Index>(mesh.positions.size());
-    if (midpoints.ends.size() + old_count > 0xfffffff0u) {
+    if (edges.size() + old_count > 0xfffffff0u) {
       throw Error(
           "the target edge length is too small: subdividing the input to it takes more than "
           "four thousand million vertices");
     }
-    for (Index a = 0; a < old_count; ++a) {
-      for (Index e = midpoints.offsets[a]; e < midpoints.offsets[a + 1]; ++e) {
-        append_midpoint(mesh, a, midpoints.ends[e]);
-        on_split(a, midpoints.ends[e]);
-      }
+    for (const auto& [a, b] : edges) {
+      append_midpoint(mesh, a, b);
+      on_split(a, b);
     }
     Faces finer;
-    finer.reserve(mesh.faces.size() + 2 * midpoints.ends.size(),
-                  3 * (mesh.faces.size() + 2 * midpoints.ends.size()));
+    finer.reserve(mesh.faces.size() + 2 * edges.size(), 3 * (mesh.faces.size() + 2 * edges.size()));
     for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
       const auto face = std::as_const(mesh.faces)[f];
       std::array<Index, 3> mid;
       for (std::size_t k = 0; k < 3; ++k) {
-        const Index id = midpoints.find(face[k], face[(k + 1) % 3]);
-        mid[k] = id == no_index ? no_index : old_count + id;
+        const Index a = face[k], b = face[(k + 1) % 3];
+        mid[k] = is_long(mesh, limit, a, b) ? old_count + find(edges, a, b) : no_index;
       }
       split(mesh.positions, {face[0], face[1], face[2]}, mid, finer);
     }
     mesh.faces = std::move(finer);
-    split_marks(midpoints, old_count, mesh);
+    split_marks(edges, old_count, mesh);
   }
   return true;
 }

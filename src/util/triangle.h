@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <limits>
 
 #include "meshgrain/mesh.h"
 
@@ -28,15 +29,28 @@ Vector closest_point_on_triangle(const Vector& p, const Vector& a, const Vector&
   const Scalar n2 = n.squaredNorm();
   const Scalar longest2 = std::max(ab.squaredNorm(), ac.squaredNorm());
   constexpr Scalar tiny = 16 * Eigen::NumTraits<Scalar>::epsilon();
+  bool beyond_ab = true, beyond_bc = true, beyond_ca = true;
   if (n2 > tiny * tiny * longest2 * longest2) {
     // The barycentric coordinates of p's foot on the plane: inside if none is negative.
     const Scalar v = ap.cross(ac).dot(n), w = ab.cross(ap).dot(n);
-    if (v >= 0 && w >= 0 && v + w <= n2) return a + (v / n2) * ab + (w / n2) * ac;
+    beyond_ab = w < 0;
+    beyond_bc = v + w > n2;
+    beyond_ca = v < 0;
+    if (!beyond_ab && !beyond_bc && !beyond_ca) return a + (v / n2) * ab + (w / n2) * ac;
   }
-  // Else the closest point lies on an edge.
-  Vector best = closest_point_on_segment(p, a, b);
-  for (const Vector& q : {closest_point_on_segment(p, b, c), closest_point_on_segment(p, c, a)})
-    if ((q - p).squaredNorm() < (best - p).squaredNorm()) best = q;
+  // Else the closest point lies on an edge that the foot is beyond.
+  Vector best = a;
+  Scalar least = std::numeric_limits<Scalar>::infinity();
+  const auto look = [&](const Vector& from, const Vector& to) {
+    const Vector q = closest_point_on_segment(p, from, to);
+    const Scalar distance = (q - p).squaredNorm();
+    if (!(distance < least)) return;
+    least = distance;
+    best = q;
+  };
+  if (beyond_ab) look(a, b);
+  if (beyond_bc) look(b, c);
+  if (beyond_ca) look(c, a);
   return best;
 }
 
