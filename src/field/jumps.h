@@ -27,7 +27,7 @@ inline std::array<int, 2> rotate_jump(const std::array<int, 2>& t, int rotation,
   const int half = posy / 2;
   const int sign = rotation >= half && rotation < posy ? -1 : 1;
   const int x = sign * t[0], y = sign * t[1];
-  const int steps = rotation < half ? rotation : rotation < posy ? rotation - half : 0;
+  const int steps = rotation % half;
   if (steps == 0) return {x, y};
   if (posy == 4) return {-y, x};
   return steps == 1 ? std::array<int, 2>{-y, x + y} : std::array<int, 2>{-x - y, x};

@@ -10,6 +10,9 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
+#include <span>
+
 #include "meshgrain/graph.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -131,6 +134,18 @@ class NeighborLanes {
   const Graph& graph_;
   Ints entry_, end_;
 };
+
+/// `values` gets what `step` makes of each of the nodes, as many at once as there are lanes.
+template <typename Step>
+HWY_INLINE void for_lanes(const Graph& graph, std::span<const Index> nodes, Vec3* values,
+                          const Step& step) {
+  const std::size_t width = hn::Lanes(Lanes());
+  for (std::size_t k = 0; k < nodes.size(); k += width) {
+    const std::size_t count = std::min(width, nodes.size() - k);
+    NeighborLanes around(graph, nodes.data() + k, count);
+    store(step(around), count, values + k);
+  }
+}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace meshgrain

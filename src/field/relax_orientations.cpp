@@ -1,6 +1,6 @@
 #include "field/relax_orientations.h"
 
-#include <algorithm>
+#include "field/with_symmetry.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "field/relax_orientations.cpp"
@@ -125,35 +125,19 @@ class Relaxation {
   Vec3s n_;
 };
 
-template <int N, OrientationEnergy E>
-void relax_all(const Graph& graph, const DirectionConstraints& constraints,
-               std::span<const Index> nodes, const Vec3* field, Vec3* values) {
-  const std::size_t width = hn::Lanes(Lanes());
-  for (std::size_t k = 0; k < nodes.size(); k += width) {
-    const std::size_t count = std::min(width, nodes.size() - k);
-    NeighborLanes around(graph, nodes.data() + k, count);
-    store(Relaxation<N, E>(graph, constraints, field, around).run(), count, values + k);
-  }
-}
-
 void relax(const Graph& graph, const DirectionConstraints& constraints, int rosy,
            OrientationEnergy energy, std::span<const Index> nodes, const Vec3* field,
            Vec3* values) {
-  const auto with = [&]<int N>() {
+  with_rosy(rosy, [&]<int N>() {
+    const auto with = [&]<OrientationEnergy E>() {
+      for_lanes(graph, nodes, values, [&](NeighborLanes& around) {
+        return Relaxation<N, E>(graph, constraints, field, around).run();
+      });
+    };
     energy == OrientationEnergy::intrinsic
-        ? relax_all<N, OrientationEnergy::intrinsic>(graph, constraints, nodes, field, values)
-        : relax_all<N, OrientationEnergy::extrinsic>(graph, constraints, nodes, field, values);
-  };
-  switch (rosy) {
-    case 1:
-      return with.template operator()<1>();
-    case 2:
-      return with.template operator()<2>();
-    case 4:
-      return with.template operator()<4>();
-    default:
-      return with.template operator()<6>();
-  }
+        ? with.template operator()<OrientationEnergy::intrinsic>()
+        : with.template operator()<OrientationEnergy::extrinsic>();
+  });
 }
 
 }  // namespace

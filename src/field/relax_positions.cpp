@@ -1,7 +1,8 @@
 #include "field/relax_positions.h"
 
-#include <algorithm>
 #include <array>
+
+#include "field/with_symmetry.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "field/relax_positions.cpp"
@@ -213,29 +214,18 @@ class Relaxation {
   Lattices<S> lattice_;  // of the nodes
 };
 
-template <int S, PositionEnergy E>
-void relax_all(const Level& level, std::span<const Index> nodes, Vec3* values) {
-  const std::size_t width = hn::Lanes(Lanes());
-  for (std::size_t k = 0; k < nodes.size(); k += width) {
-    const std::size_t count = std::min(width, nodes.size() - k);
-    NeighborLanes around(level.graph, nodes.data() + k, count);
-    store(Relaxation<S, E>(level, around).run(), count, values + k);
-  }
-}
-
 void relax(const Graph& graph, const LatticeFrame& frame, const LineConstraints& constraints,
            int posy, PositionEnergy energy, std::span<const Index> nodes, const Vec3* field,
            Vec3* values) {
-  using enum PositionEnergy;
   const Level level{graph, frame, constraints, field};
-  const bool intrinsic_energy = energy == intrinsic;
-  if (posy == 4) {
-    intrinsic_energy ? relax_all<4, intrinsic>(level, nodes, values)
-                     : relax_all<4, extrinsic>(level, nodes, values);
-  } else {
-    intrinsic_energy ? relax_all<6, intrinsic>(level, nodes, values)
-                     : relax_all<6, extrinsic>(level, nodes, values);
-  }
+  with_posy(posy, [&]<int S>() {
+    const auto with = [&]<PositionEnergy E>() {
+      for_lanes(graph, nodes, values,
+                [&](NeighborLanes& around) { return Relaxation<S, E>(level, around).run(); });
+    };
+    energy == PositionEnergy::intrinsic ? with.template operator()<PositionEnergy::intrinsic>()
+                                        : with.template operator()<PositionEnergy::extrinsic>();
+  });
 }
 
 }  // namespace

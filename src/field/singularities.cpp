@@ -6,11 +6,11 @@
 
 #include "field/jumps.h"
 #include "field/rosy.h"
+#include "util/collect.h"
 
 namespace meshgrain {
 namespace {
 
-constexpr std::size_t grain = 4096;
 constexpr double pi = std::numbers::pi;
 
 /// The angle about `n` from one tangent vector to another.
@@ -36,15 +36,15 @@ double turn(const std::vector<Vec3>& normals, const OrientationField& field, Ind
   return i == low ? nearest : -nearest;
 }
 
+/// What `test(f, out)` appends to `out` for each face.
 template <typename Item, typename Test>
-std::vector<Item> collect(std::size_t faces, const Test& test, const Context& context) {
-  std::vector<std::vector<Item>> parts((faces + grain - 1) / grain);
-  context.for_ranges(faces, grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t f = begin; f < end; ++f) test(static_cast<Index>(f), parts[begin / grain]);
-  });
-  std::vector<Item> result;
-  for (const auto& part : parts) result.insert(result.end(), part.begin(), part.end());
-  return result;
+std::vector<Item> at_faces(std::size_t faces, const Test& test, const Context& context) {
+  return collect<Item>(
+      faces,
+      [&](std::size_t begin, std::size_t end, std::vector<Item>& out) {
+        for (std::size_t f = begin; f < end; ++f) test(static_cast<Index>(f), out);
+      },
+      context);
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ std::vector<OrientationSingularity> orientation_singularities(const Mesh& triang
                                                               const std::vector<Vec3>& normals,
                                                               const OrientationField& field,
                                                               const Context& context) {
-  return collect<OrientationSingularity>(
+  return at_faces<OrientationSingularity>(
       triangles.faces.size(),
       [&](Index f, std::vector<OrientationSingularity>& out) {
         const auto v = triangles.faces[f];
@@ -70,7 +70,7 @@ std::vector<PositionSingularity> position_singularities(const Mesh& triangles, c
                                                         const PositionField& position,
                                                         PositionEnergy energy,
                                                         const Context& context) {
-  return collect<PositionSingularity>(
+  return at_faces<PositionSingularity>(
       triangles.faces.size(),
       [&](Index f, std::vector<PositionSingularity>& out) {
         const auto v = triangles.faces[f];

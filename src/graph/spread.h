@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -19,8 +20,7 @@ template <typename Lower>
 void spread(const Graph& graph, const std::vector<float>& values,
             const std::vector<std::pair<float, Index>>& sources, float slope, const Lower& lower,
             const Context& context) {
-  double area = 0;
-  for (const float a : graph.areas) area += a;
+  const double area = std::accumulate(graph.areas.begin(), graph.areas.end(), 0.0);
   const double spacing =
       std::sqrt(area / static_cast<double>(std::max<std::size_t>(1, graph.size())));
   BucketQueue queue(std::max(slope * static_cast<float>(spacing) / 2, 1e-30f));

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "mesh/vertex_faces.h"
+#include "util/collect.h"
 
 namespace meshgrain {
 namespace {
@@ -19,11 +20,8 @@ struct EdgeFaces {
 /// Calls `take(a, b, faces, out)` for every edge a < b.
 template <typename Selected, typename Take>
 std::vector<Selected> select_edges(const Mesh& mesh, const Take& take, const Context& context) {
-  constexpr std::size_t grain = 4096;
   const VertexFaces around = vertex_faces(mesh, context);
-  const std::size_t n = mesh.positions.size();
-  std::vector<std::vector<Selected>> found((n + grain - 1) / grain);
-  context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
+  const auto look = [&](std::size_t begin, std::size_t end, std::vector<Selected>& out) {
     struct Use {
       Index other, face;
       bool forth;
@@ -49,13 +47,11 @@ std::vector<Selected> select_edges(const Mesh& mesh, const Take& take, const Con
           ++(uses[k].forth ? faces.forth : faces.back);
           (uses[k].forth ? faces.left : faces.right) = uses[k].face;
         }
-        take(a, b, faces, found[begin / grain]);
+        take(a, b, faces, out);
       }
     }
-  });
-  std::vector<Selected> result;
-  for (const auto& part : found) result.insert(result.end(), part.begin(), part.end());
-  return result;
+  };
+  return collect<Selected>(mesh.positions.size(), look, context);
 }
 
 using Edge = std::array<Index, 2>;

@@ -4,6 +4,7 @@
 
 #include "meshgrain/error.h"
 #include "meshgrain/surface.h"
+#include "util/collect.h"
 #include "util/edge_of.h"
 #include "util/sort_unique.h"
 
@@ -29,23 +30,20 @@ bool is_long(const Mesh& mesh, const Limit& limit, Index a, Index b) {
 
 template <typename Limit>
 LongEdges long_edges(const Mesh& mesh, const Limit& limit, const Context& context) {
-  constexpr std::size_t grain = 8192;
-  const std::size_t count = mesh.faces.size();
-  std::vector<LongEdges> found((count + grain - 1) / grain);
-  context.for_ranges(count, grain, [&](std::size_t begin, std::size_t end) {
-    LongEdges& edges = found[begin / grain];
-    for (std::size_t f = begin; f < end; ++f) {
-      const auto face = mesh.faces[f];
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Index a = face[k], b = face[(k + 1) % 3];
-        if (is_long(mesh, limit, a, b)) edges.push_back(edge_of(a, b));
-      }
-    }
-  });
-  LongEdges result;
-  for (const LongEdges& edges : found) result.insert(result.end(), edges.begin(), edges.end());
-  sort_unique(result);
-  return result;
+  LongEdges edges = collect<std::array<Index, 2>>(
+      mesh.faces.size(),
+      [&](std::size_t begin, std::size_t end, LongEdges& out) {
+        for (std::size_t f = begin; f < end; ++f) {
+          const auto face = mesh.faces[f];
+          for (std::size_t k = 0; k < 3; ++k) {
+            const Index a = face[k], b = face[(k + 1) % 3];
+            if (is_long(mesh, limit, a, b)) out.push_back(edge_of(a, b));
+          }
+        }
+      },
+      context);
+  sort_unique(edges);
+  return edges;
 }
 
 void append_midpoint(Mesh& mesh, Index a, Index b) {

@@ -14,28 +14,21 @@ namespace meshgrain {
 /// gets any cheaper; else it may have to be looked at again.
 class BucketQueue {
  public:
-  explicit BucketQueue(float width) : width_(width) { clear(); }
+  explicit BucketQueue(float width) : width_(width) { first_.fill(none); }
 
   struct Entry {
     float cost;
     std::uint32_t item;
   };
 
-  void clear() {
-    first_.fill(none);
-    nodes_.clear();
-    later_.clear();
-    start_ = 0;
-    lowest_ = count;
-  }
-
   void push(float cost, std::uint32_t item) {
     const float place = (cost - start_) / width_;
-    if (!(place < static_cast<float>(count))) {
+    if (place >= static_cast<float>(count)) {
       later_.push_back({cost, item});
       return;
     }
-    const auto bucket = static_cast<std::size_t>(std::max(place, 0.0f));
+    // Also what is not finite, once it is all that is left.
+    const auto bucket = static_cast<std::size_t>(std::max(0.0f, place));
     lowest_ = std::min(lowest_, bucket);
     nodes_.push_back({{cost, item}, first_[bucket]});
     first_[bucket] = static_cast<std::uint32_t>(nodes_.size() - 1);
@@ -52,8 +45,6 @@ class BucketQueue {
     for (const Entry& entry : std::exchange(later_, {})) push(entry.cost, entry.item);
     return true;
   }
-  /// No entry that is left costs less than that, but for rounding.
-  float least() const { return start_ + static_cast<float>(lowest_) * width_; }
   Entry pop() {
     const Node& node = nodes_[first_[lowest_]];
     first_[lowest_] = node.next;
