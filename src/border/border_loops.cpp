@@ -53,12 +53,11 @@ std::vector<std::uint8_t> border_vertices(const Mesh& mesh, const Context& conte
 BorderLoops find_border_loops(const Mesh& surface, std::span<const std::uint8_t> locked,
                               const Context& context) {
   BorderLoops result;
-  std::vector<Index> sources, vertices;
-  std::vector<std::uint8_t> holes;
-  const PolygonMap map(surface, sources, holes, context);
+  std::vector<Index> sources, corners, vertices;
+  const PolygonMap map(surface, sources, corners, context);
   std::vector<std::uint8_t> seen(map.halfedges(), 0);
   for (Index start = 0; start < map.halfedges(); ++start) {
-    if (!holes[start] || seen[start]) continue;
+    if (corners[start] != no_index || seen[start]) continue;
     vertices.clear();
     Index h = start;
     do {

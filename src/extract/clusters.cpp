@@ -159,8 +159,8 @@ Clusters average_clusters(const Graph& graph, const PositionField& position,
     result.positions[c] += alpha * position.points[i];
     result.normals[c] += alpha * graph.normals[i];
     weight[c] += alpha;
-    result.on_border[c] |= border[m];
-    most_held[c] = std::max(most_held[c], hold[m]);
+    result.on_border[c] |= border[i];
+    most_held[c] = std::max(most_held[c], hold[i]);
     const float rho = position.edge_length[i];
     result.cover[c] += graph.areas[i] / (rho * rho);
   }
@@ -178,7 +178,7 @@ Clusters average_clusters(const Graph& graph, const PositionField& position,
   std::vector<float> nearest(count, 0);
   for (std::size_t m = 0; m < nodes.size(); ++m) {
     const Index c = cluster_of[m], i = nodes[m];
-    if (c == no_index || hold[m] < most_held[c]) continue;
+    if (c == no_index || hold[i] < most_held[c]) continue;
     const float distance = (graph.positions[i] - result.positions[c]).squaredNorm();
     if (result.nodes[c] == no_index || distance < nearest[c]) {
       nearest[c] = distance;

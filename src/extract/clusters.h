@@ -25,8 +25,8 @@ struct Clusters {
 };
 
 /// Positions, normals and nearest nodes of `count` clusters (section 3.8). Member m is node
-/// `nodes[m]` and belongs to cluster `cluster_of[m]` (or to none: no_index). The nearest node of a
-/// cluster is one of those that are held most.
+/// `nodes[m]` and belongs to cluster `cluster_of[m]` (or to none: no_index). `border` and `hold`
+/// are of each node. The nearest node of a cluster is one of those that are held most.
 Clusters average_clusters(const Graph& graph, const PositionField& position,
                           std::span<const Index> nodes, std::span<const Index> cluster_of,
                           std::span<const std::uint8_t> border, std::span<const std::uint8_t> hold,

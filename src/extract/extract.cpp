@@ -163,7 +163,7 @@ Extraction extract_from_mesh(const Graph& graph, const OrientationField& orienta
   LatticeMesh lattice(std::move(collapsed.lattice), std::move(collapsed.clusters), collapsed.roots,
                       graph, orientation, position);
   repair_lattice(lattice);
-  cancel_position_singularities(lattice, options.cancelling_cost);
+  cancel_position_singularities(lattice, options.cancelling_cost, context);
   repair_lattice(lattice);
   lattice.clusters.hold = std::move(lattice.hold);
   FaceRepair repair(lattice.map, lattice.clusters, position.posy, std::move(lattice.holes),

@@ -10,8 +10,10 @@ namespace meshgrain {
 
 ExtractionMap::ExtractionMap(const Extraction& extraction, const Context& context) {
   const Mesh& mesh = extraction.mesh;
-  std::vector<Index> sources;
-  map = PolygonMap(mesh, sources, holes, context);
+  std::vector<Index> sources, corners;
+  map = PolygonMap(mesh, sources, corners, context);
+  holes.resize(map.halfedges());
+  for (Index h = 0; h < map.halfedges(); ++h) holes[h] = corners[h] == no_index;
   const std::vector<std::uint8_t> hold = held_vertices(extraction);
   for (const Index v : sources) {
     clusters.positions.push_back(mesh.positions[v]);

@@ -1,5 +1,6 @@
 #include "extract/lattice_triangle.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -8,6 +9,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr double rounding = 1e-9;
+constexpr double flat = 1, turned = 4;  // flaws
 
 double cross(const LatticePoint& a, const LatticePoint& b) {
   return a[0] * b[1] - a[1] * b[0];
@@ -15,6 +17,10 @@ double cross(const LatticePoint& a, const LatticePoint& b) {
 
 LatticePoint point(const std::array<int, 2>& t) {
   return {static_cast<double>(t[0]), static_cast<double>(t[1])};
+}
+
+double flaw_of(double area) {
+  return area < 0 ? turned * (1 - area) : area < 0.25 ? flat : 0;
 }
 
 LatticePoint operator-(const LatticePoint& a, const LatticePoint& b) {
@@ -55,11 +61,6 @@ double LatticeMetric::angle(const LatticePoint& a, const LatticePoint& b) const 
                    : std::atan2(sine * std::sqrt(0.75), cosine + (a[0] * b[1] + a[1] * b[0]) / 2);
 }
 
-Jump LatticeTriangle::sum(int corner) const {
-  return composed(composed(around[corner], around[(corner + 1) % 3], posy),
-                  around[(corner + 2) % 3], posy);
-}
-
 LatticePoint LatticeTriangle::apex(int corner) const {
   return fixed_point(sum(corner), posy);
 }
@@ -71,16 +72,21 @@ double LatticeTriangle::apex_angle() const {
 }
 
 double LatticeTriangle::area() const {
-  if (is_cone()) {
-    const auto corners = unroll(*this);
-    return cross(corners[0], corners[1]) + cross(corners[1], corners[2]) +
-           cross(corners[2], corners[3]);
-  }
+  const Jump all = sum();
+  if (all.rotation == 0) return flat_area(all.is_zero());
+  const auto corners = unroll(*this);
+  return cross(corners[0], corners[1]) + cross(corners[1], corners[2]) +
+         cross(corners[2], corners[3]);
+}
+
+double LatticeTriangle::flat_area(bool is_plane) const {
   const auto seen_from = [&](int corner) {
-    const Jump& first = around[corner];
-    return cross(point(first.t), point(composed(first, around[(corner + 1) % 3], posy).t));
+    const auto& first = around[corner].t;
+    const auto second =
+        rotate_jump(around[(corner + 1) % 3].t, posy - around[corner].rotation, posy);
+    return first[0] * second[1] - first[1] * second[0];
   };
-  return is_plane() ? seen_from(0) : (seen_from(0) + seen_from(1) + seen_from(2)) / 3;
+  return is_plane ? seen_from(0) : (seen_from(0) + seen_from(1) + seen_from(2)) / 3.0;
 }
 
 double LatticeTriangle::angle(int corner) const {
@@ -97,11 +103,19 @@ double LatticeTriangle::angle(int corner) const {
 }
 
 double LatticeTriangle::flaw() const {
-  constexpr double flat = 1, turned = 4;
-  if (!is_cone()) {
-    const double size = area();
-    return size < 0 ? turned * (1 - size) : size < 0.25 ? flat : 0;
-  }
+  const Jump all = sum();
+  return all.rotation == 0 ? flaw_of(flat_area(all.is_zero())) : flaw_of_cone();
+}
+
+double LatticeTriangle::misfit() const {
+  const Jump all = sum();
+  if (all.rotation != 0) return flaw_of_cone();
+  const double size = flat_area(all.is_zero());
+  const double flaw = flaw_of(size);
+  return flaw == 0 ? std::max(0.0, size - 1) : flaw;
+}
+
+double LatticeTriangle::flaw_of_cone() const {
   const LatticeMetric metric{posy};
   const auto corners = unroll(*this);
   double result = 0, size = 0, turn = 0;

@@ -29,7 +29,10 @@ struct LatticeTriangle {
   std::array<Jump, 3> around;
 
   /// In the frame of a corner.
-  Jump sum(int corner = 0) const;
+  Jump sum(int corner = 0) const {
+    return composed(composed(around[corner], around[(corner + 1) % 3], posy),
+                    around[(corner + 2) % 3], posy);
+  }
   bool is_cone() const { return sum().rotation != 0; }
   bool is_plane() const { return sum().rotation == 0 && sum().is_zero(); }
 
@@ -49,6 +52,14 @@ struct LatticeTriangle {
   /// edge and the apex), 1 if it is flat, and more if it is turned over or goes around its apex too
   /// often or not often enough.
   double flaw() const;
+
+  /// The same, but a triangle of more than half a cell, which gains a vertex, is as far from what
+  /// should be as a flat one, which loses one to its neighbours.
+  double misfit() const;
+
+ private:
+  double flaw_of_cone() const;
+  double flat_area(bool is_plane) const;
 };
 
 }  // namespace meshgrain

@@ -3,9 +3,12 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
+#include "extract/disk_clusters.h"
 #include "features/feature_jumps.h"
 #include "field/posy.h"
 
@@ -19,30 +22,32 @@ class Collapse {
            const OrientationField& orientation, const PositionField& position,
            PositionEnergy energy, const Context& context)
       : graph_(graph), orientation_(orientation), position_(position) {
+    const FeatureEdges edges(features, graph.size());
+    hold_.resize(graph.size());
+    std::vector<std::uint8_t> is_free(graph.size());
+    for (Index i = 0; i < graph.size(); ++i) {
+      hold_[i] = edges.hold(i);
+      is_free[i] = hold_[i] == free_vertex;
+    }
+    disks_ = find_disk_clusters(surface, graph, orientation, position, energy, std::move(is_free),
+                                context);
     lattice_.posy = position.posy;
-    lattice_.map = PolygonMap(surface, sources_, holes_, context);
+    const std::vector<Index> corners = shrink_disks(context);
+    const auto halfedges = static_cast<Index>(map_.halfedges());
     merged_into_.resize(map_.vertices());
     std::iota(merged_into_.begin(), merged_into_.end(), Index{0});
-    rim_.assign(map_.vertices(), 0);
-    for (Index h = 0; h < map_.halfedges(); ++h) {
-      if (holes_[h]) rim_[map_.origin(h)] = 1;
-    }
-    const FeatureEdges edges(features, graph.size());
+    holes_.resize(halfedges);
+    rim_.assign(graph.size(), 0);
     lattice_.hold.resize(map_.vertices());
-    for (Index v = 0; v < map_.vertices(); ++v) lattice_.hold[v] = edges.hold(sources_[v]);
-    hold_ = lattice_.hold;
-    jumps_.resize(map_.halfedges() / 2);
-    lattice_.lines.resize(map_.halfedges() / 2);
-    const FeatureJumps jumps(graph, orientation, position, energy);
-    context.for_ranges(jumps_.size(), 4096, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t e = begin; e < end; ++e) {
-        const auto h = static_cast<Index>(2 * e);
-        const Index i = sources_[map_.origin(h)], j = sources_[map_.target(h)];
-        const Index line = lattice_.lines[e] = edges.line(i, j);
-        jumps_[e] = jumps.jump(i, j, edges.hold(i), edges.hold(j),
-                               line != no_index && features.align[line] > 0);
-      }
-    });
+    for (Index v = 0; v < map_.vertices(); ++v) lattice_.hold[v] = hold_[sources_[v]];
+    for (Index h = 0; h < halfedges; ++h) {
+      holes_[h] = corners[h] == no_index;
+      if (holes_[h]) rim_[sources_[map_.origin(h)]] = 1;
+    }
+    jumps_.resize(halfedges / 2);
+    lattice_.lines.resize(halfedges / 2);
+    take_jumps(features, edges, FeatureJumps(graph, orientation, position, energy), corners,
+               context);
   }
 
   void run(const Context& context) {
@@ -84,6 +89,98 @@ class Collapse {
   CollapsedMesh result() &&;
 
  private:
+  /// The map of the surface with each disk as one vertex, in the frame of its root. Returns the
+  /// corners of `disks_.triangles` where halfedges start.
+  std::vector<Index> shrink_disks(const Context& context) {
+    std::vector<Index> number(graph_.size(), no_index), roots;
+    for (const auto& triangle : disks_.triangles) {
+      for (const Index v : triangle) number[disks_.root[v]] = 0;
+    }
+    for (Index i = 0; i < graph_.size(); ++i) {
+      if (number[i] == no_index) continue;
+      number[i] = static_cast<Index>(roots.size());
+      roots.push_back(i);
+    }
+    Mesh shrunk;
+    shrunk.positions.resize(roots.size());
+    for (const auto& [a, b, c] : disks_.triangles) {
+      shrunk.faces.push_back(
+          std::array{number[disks_.root[a]], number[disks_.root[b]], number[disks_.root[c]]});
+    }
+    std::vector<Index> corners;
+    map_ = PolygonMap(shrunk, sources_, corners, context);
+    for (Index& source : sources_) source = roots[source];
+    return corners;
+  }
+
+  /// Gives each edge of the map, of all the edges of the surface between its two clusters, which
+  /// may disagree, the jump of the one that is nearest to the real distance of their roots.
+  void take_jumps(const FeatureLines& features, const FeatureEdges& edges,
+                  const FeatureJumps& jumps, const std::vector<Index>& corners,
+                  const Context& context) {
+    const auto hold = [&](Index v) { return static_cast<Hold>(hold_[v]); };
+    // At least one is in a triangle beside it. Lines run between vertices that are alone.
+    context.for_ranges(jumps_.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t e = begin; e < end; ++e) {
+        const auto h = static_cast<Index>(2 * e);
+        const Index corner = corners[h] != no_index ? corners[h] : corners[PolygonMap::twin(h)];
+        const auto& triangle = disks_.triangles[corner / 3];
+        Index i = triangle[corner % 3], j = triangle[(corner + 1) % 3];
+        if (disks_.root[i] != sources_[map_.origin(h)]) std::swap(i, j);
+        const Index line = lattice_.lines[e] = edges.line(i, j);
+        const bool aligned = line != no_index && features.align[line] > 0;
+        jumps_[e] = disks_.between_roots(i, j, jumps.jump(i, j, hold(i), hold(j), aligned));
+      }
+    });
+    std::vector<Index> vertex(graph_.size(), no_index);  // of each root that is one vertex
+    for (Index v = 0; v < map_.vertices(); ++v) {
+      Index& other = vertex[sources_[v]];
+      other = other == no_index ? v : cut;
+    }
+    struct Found {
+      Index edge;
+      float deviation;
+      Jump jump;
+    };
+    constexpr std::size_t grain = 4096;
+    std::vector<std::vector<Found>> found((graph_.size() + grain - 1) / grain);
+    context.for_ranges(graph_.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (auto i = static_cast<Index>(begin); i < end; ++i) {
+        const Index a = vertex[disks_.root[i]];
+        if (a >= cut) continue;
+        for (const Index j : graph_.neighbors_of(i)) {
+          if (j < i || disks_.root[j] == disks_.root[i]) continue;
+          // Alone, both have no other edge.
+          if (disks_.root[i] == i && disks_.root[j] == j) continue;
+          const Index b = vertex[disks_.root[j]];
+          const Index h = b < cut ? halfedge_between(a, b) : no_index;
+          if (h == no_index) continue;
+          const Jump jump = disks_.between_roots(i, j, jumps.jump(i, j, hold(i), hold(j), false));
+          found[begin / grain].push_back(
+              {h / 2, deviation(a, b, jump.t), h % 2 == 0 ? jump : reversed(jump, lattice_.posy)});
+        }
+      }
+    });
+    std::vector<float> least(jumps_.size(), std::numeric_limits<float>::infinity());
+    for (const std::vector<Found>& part : found) {
+      for (const Found& other : part) {
+        if (!(other.deviation < least[other.edge])) continue;
+        least[other.edge] = other.deviation;
+        jumps_[other.edge] = other.jump;
+      }
+    }
+  }
+
+  Index halfedge_between(Index from, Index to) const {
+    const Index start = map_.leaving(from);
+    Index h = start;
+    do {
+      if (map_.target(h) == to) return h;
+      h = map_.around(h);
+    } while (h != start);
+    return no_index;
+  }
+
   /// How far a jump is from the real distance between two vertices, in edge lengths.
   float deviation(Index from, Index to, const std::array<int, 2>& t) const {
     const Index i = sources_[from], j = sources_[to];
@@ -113,16 +210,19 @@ class Collapse {
     merged_into_[b] = a;
   }
 
+  static constexpr Index cut = no_index - 1;  // instead of a vertex: there are several
+
   const Graph& graph_;
   const OrientationField& orientation_;
   const PositionField& position_;
-  std::vector<Index> sources_;
+  DiskClusters disks_;
+  std::vector<Index> sources_;  // of each vertex of the map: the one of the surface
   JumpMap lattice_;
   PolygonMap& map_ = lattice_.map;
   std::vector<std::uint8_t>& holes_ = lattice_.holes;
   std::vector<Jump>& jumps_ = lattice_.jumps;
   std::vector<Index> merged_into_;
-  // For each vertex at the start, whether it was on a border, and how it was held.
+  // Of each vertex of the surface: whether it is on a border, and how it is held.
   std::vector<std::uint8_t> rim_, hold_;
   LinkCondition link_;
 };
@@ -154,11 +254,12 @@ std::vector<CollapsedMesh::Meeting> find_meetings(std::span<const Index> sources
 CollapsedMesh Collapse::result() && {
   const auto vertices = static_cast<Index>(map_.vertices());
   const PolygonMap::Renumbering rank = map_.compact();
-  std::vector<Index> cluster(vertices);
+  std::vector<Index> cluster(vertices), cluster_of_root(graph_.size(), no_index);
   for (Index v = 0; v < vertices; ++v) {
     Index root = v;
     while (merged_into_[root] != root) root = merged_into_[root] = merged_into_[merged_into_[root]];
     cluster[v] = rank.vertices[root];
+    cluster_of_root[sources_[v]] = cluster[v];
   }
   std::vector<Index> roots(rank.vertex_count);
   for (Index v = 0; v < vertices; ++v) {
@@ -181,9 +282,16 @@ CollapsedMesh Collapse::result() && {
   jumps_.resize(map_.halfedges() / 2);
   jumps_.shrink_to_fit();
   lattice_.lines.resize(jumps_.size());
-  Clusters clusters =
-      average_clusters(graph_, position_, sources_, cluster, rim_, hold_, rank.vertex_count);
   auto meetings = find_meetings(sources_, cluster, graph_.size());
+  // The members of disks, besides their roots.
+  std::vector<Index> members = std::move(sources_);
+  for (Index i = 0; i < graph_.size(); ++i) {
+    if (disks_.root[i] == i) continue;
+    members.push_back(i);
+    cluster.push_back(cluster_of_root[disks_.root[i]]);
+  }
+  Clusters clusters =
+      average_clusters(graph_, position_, members, cluster, rim_, hold_, rank.vertex_count);
   return {std::move(lattice_), std::move(clusters), std::move(roots), std::move(meetings)};
 }
 

@@ -56,8 +56,8 @@ PolygonMap::PolygonMap(std::span<const Vec3> positions, std::span<const Vec3> no
   }
 }
 
-PolygonMap::PolygonMap(const Mesh& mesh, std::vector<Index>& sources,
-                       std::vector<std::uint8_t>& holes, const Context& context) {
+PolygonMap::PolygonMap(const Mesh& mesh, std::vector<Index>& sources, std::vector<Index>& corner_at,
+                       const Context& context) {
   const Faces& faces = mesh.faces;
   const VertexFaces around_vertex = vertex_faces(mesh, context);
   const auto corners = faces.corners();
@@ -100,7 +100,7 @@ PolygonMap::PolygonMap(const Mesh& mesh, std::vector<Index>& sources,
       if (opposite != no_index) halfedge_of[opposite] = h + 1;
     }
   }
-  std::vector<Index> corner_at(next_.size(), no_index);
+  corner_at.assign(next_.size(), no_index);
   for (Index f = 0; f < faces.size(); ++f) {
     const std::size_t first = faces.first(f), n = faces.degree(f);
     for (std::size_t k = 0; k < n; ++k) {
@@ -111,10 +111,8 @@ PolygonMap::PolygonMap(const Mesh& mesh, std::vector<Index>& sources,
     }
   }
   // A border halfedge goes on along the border: around its target, past the faces there.
-  holes.assign(next_.size(), 0);
   for (Index h = 0; h < next_.size(); ++h) {
     if (corner_at[h] != no_index) continue;
-    holes[h] = 1;
     Index g = prev_[twin(h)];
     while (corner_at[twin(g)] != no_index) g = prev_[twin(g)];
     next_[h] = twin(g);

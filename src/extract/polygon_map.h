@@ -21,8 +21,9 @@ class PolygonMap {
 
   /// The faces of a mesh. Edges that are not between two faces of opposite direction are cut: each
   /// side gets a border of its own. A vertex where several fans of faces meet becomes one a fan.
-  /// `sources` gets the mesh's vertex of each vertex, `holes` a flag for each halfedge outside.
-  PolygonMap(const Mesh& mesh, std::vector<Index>& sources, std::vector<std::uint8_t>& holes,
+  /// `sources` gets the mesh's vertex of each vertex, `corners` the place in Faces::corners() where
+  /// each halfedge starts, or no_index for one outside.
+  PolygonMap(const Mesh& mesh, std::vector<Index>& sources, std::vector<Index>& corners,
              const Context& context);
 
   std::size_t vertices() const { return leaving_.size(); }

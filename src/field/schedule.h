@@ -11,7 +11,7 @@ namespace meshgrain {
 /// by different threads or in different SIMD lanes: the result is the same for any number of
 /// either.
 struct BlockColoring {
-  static constexpr std::size_t block_size = 512;
+  static constexpr std::size_t block_size = 64;
   std::vector<std::vector<Index>> colors;  // the blocks of each colour
 };
 

@@ -115,6 +115,17 @@ float LocalSearch::quality_here(Index f) const {
   return face_quality(face, mesh_.positions, upward.normalized());
 }
 
+float LocalSearch::quality_among_neighbors(Index f) const {
+  const auto face = std::as_const(mesh_.faces)[f];
+  Vec3 upward = Vec3::Zero();
+  for (const Index v : face) {
+    for (const Index g : around_[v]) {
+      upward += area_vector(std::as_const(mesh_.faces)[g], mesh_.positions);
+    }
+  }
+  return face_quality(face, mesh_.positions, upward.normalized());
+}
+
 /// What the faces around a vertex lack, the worst counting most, and how uneven they are. From
 /// `limit` on it need not be exact.
 double LocalSearch::lack(Index v, double limit) const {

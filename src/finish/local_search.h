@@ -25,6 +25,9 @@ class LocalSearch {
   /// away from the surface.
   float quality(Index f) const { return quality_[f]; }
 
+  /// The same with the normals of the faces around its corners in place of the surface's.
+  float quality_among_neighbors(Index f) const;
+
   /// Tries each of the vertices, and again while any of them moves. Returns whether one did.
   bool improve(std::span<const Index> vertices, int sweeps, const Context& context);
 

@@ -48,15 +48,11 @@ class Mending {
       }
     }
     search_.keep_apart({});
-    for (const int rings : {2, 3, 5}) {
-      std::size_t tried = 0;
-      for (Index f = 0; f < mesh_.faces.size(); ++f) {
-        if (search_.quality(f) >= acceptable) continue;
-        if (++tried > std::max(most_tried, mesh_.faces.size() / 100)) break;
-        Place place = around(f, f, rings);
-        --place.worse;
-        if (!reshape(place)) restore(place);
-      }
+    // Across a fold that is narrower than a face, faces cannot look where the surface does there.
+    constexpr Demands ever_less[] = {{true, 0.1f}, {false, 0.1f}, {false, 0}};
+    for (const Demands& demands : ever_less) {
+      demands_ = demands;
+      for (const int rings : {2, 3, 5}) reshape_all(rings);
     }
   }
 
@@ -67,16 +63,37 @@ class Mending {
     std::vector<Index> vertices;  // those with all of their faces in it
     std::vector<LocalSearch::Place> before;
     std::size_t crossings = 0;  // pairs of faces that pass through each other
-    std::size_t worse = 0;      // faces that are not acceptable
+    std::size_t bad = 0;        // faces, see is_bad()
   };
 
-  static constexpr float acceptable = 0.1f;            // quality of a face
+  /// What makes a face acceptable.
+  struct Demands {
+    bool along_surface;  // it looks where the surface does; else only where its neighbours do
+    float quality;
+  };
+
   static constexpr std::size_t largest_to_slide = 80;  // faces of a place: it takes long
   static constexpr std::size_t most_crossings_to_slide = 25;
   // A mesh with more bad places is too coarse for its surface: no need to try for minutes.
   static constexpr std::size_t most_tried = 50;
   static constexpr std::size_t tries = 6;              // that a face takes part in without success
   static constexpr std::size_t most_searched = 20000;  // faces of the surface in a place
+
+  void reshape_all(int rings) {
+    std::size_t tried = 0;
+    for (Index f = 0; f < mesh_.faces.size(); ++f) {
+      if (!is_bad(f)) continue;
+      if (++tried > std::max(most_tried, mesh_.faces.size() / 100)) break;
+      Place place = around(f, f, rings);
+      --place.bad;
+      if (!reshape(place)) restore(place);
+    }
+  }
+
+  bool is_bad(Index f) const {
+    return search_.quality(f) < demands_.quality &&
+           (demands_.along_surface || search_.quality_among_neighbors(f) < demands_.quality);
+  }
 
   Place around(Index f, Index g, int rings) const {
     context_.check();
@@ -96,7 +113,7 @@ class Mending {
     }
     for (const Index v : place.vertices) place.before.push_back(search_.place(v));
     place.crossings = count_crossings(place);
-    place.worse = count_worse(place);
+    place.bad = count_bad(place);
     return place;
   }
 
@@ -122,13 +139,13 @@ class Mending {
     return count;
   }
 
-  std::size_t count_worse(const Place& place) const {
-    return static_cast<std::size_t>(std::ranges::count_if(
-        place.faces, [&](Index f) { return search_.quality(f) < acceptable; }));
+  std::size_t count_bad(const Place& place) const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(place.faces, [&](Index f) { return is_bad(f); }));
   }
 
   bool is_mended(const Place& place) const {
-    return count_worse(place) <= place.worse && count_crossings(place) <= place.crossings;
+    return count_bad(place) <= place.bad && count_crossings(place) <= place.crossings;
   }
 
   bool part(const Place& place) {
@@ -199,7 +216,7 @@ class Mending {
   bool leave_lines(const Place& place) {
     bool any = false;
     for (const Index f : place.faces) {
-      if (search_.quality(f) >= acceptable) continue;
+      if (!is_bad(f)) continue;
       for (const Index v : mesh_.faces[f]) {
         if (!std::ranges::binary_search(place.vertices, v)) continue;
         any = placement_.release(v) || any;
@@ -243,6 +260,7 @@ class Mending {
   Placement& placement_;
   LocalSearch& search_;
   bool corners_stay_;
+  Demands demands_{true, 0.1f};
   const Context& context_;
 };
 

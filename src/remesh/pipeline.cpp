@@ -16,6 +16,7 @@
 #include "meshgrain/singularities.h"
 #include "meshgrain/surface.h"
 #include "meshgrain/triangulate.h"
+#include "remesh/flattened_share.h"
 #include "remesh/notes.h"
 #include "remesh/take_out_noise.h"
 
@@ -142,12 +143,25 @@ void Pipeline::size_faces() {
   const EdgeLength relative = relative_edge_lengths(hierarchy_, surface_, features_, sizing,
                                                     target_.face_side(area_), context_);
   lengths_ = target_.edge_lengths(graph(), relative, growth(), context_);
-  if (borders_.empty()) return;
+  const double more_faces = faces_to_ask_for();
+  if (borders_.empty()) {
+    lengths_ = scaled(lengths_, std::sqrt(1 / more_faces));
+    return;
+  }
   free_lengths_ = lengths_;
   // The lattice of pure quads is twice as coarse as their edges.
   const double sides = options_.faces == OutputFaces::quads ? 2 : 1;
   border_spacing_ = border_spacing(borders_, graph(), mean_length_, sides, context_);
-  fit_lengths_to_borders(1);
+  fit_lengths_to_borders(more_faces);
+}
+
+double Pipeline::faces_to_ask_for() const {
+  if (options_.edge_length > 0) return 1;
+  // A lattice spans what bends within a few cells, as its faces will. How many was measured.
+  const double cells = options_.faces == OutputFaces::quads           ? 2
+                       : options_.faces == OutputFaces::quad_dominant ? 3
+                                                                      : 4;
+  return 1 / flattened_share(hierarchy_, cells * mean_length_ * mean_length_);
 }
 
 bool Pipeline::fit_lengths_to_borders(double more_faces) {
@@ -217,10 +231,13 @@ void Pipeline::orient() {
 
 void Pipeline::position_and_extract() {
   constexpr int attempts = 8;
-  constexpr double tolerance = 0.008;
+  constexpr double tolerance = 0.0095;
   const bool given = options_.fields != nullptr && !options_.fields->position.points.empty();
   double least_error = std::numeric_limits<double>::infinity();
   bool has_room = true;  // beside borders that stay
+  // By how much (as logarithms) more faces were asked for than at first, and how many more there
+  // were for it, all attempts together: a single one may be off by as much as a row of cells.
+  double asked = 0, excess = 0;
   for (int attempt = 0; attempt < attempts; ++attempt) {
     PositionField positions = stage_("position field", [&] {
       return given ? transfer_position(*options_.fields, graph(), frame_, context_)
@@ -239,17 +256,23 @@ void Pipeline::position_and_extract() {
     const double closing = attempt < 3 ? tolerance : 0.03;
     if (given || (ratio > 1 - tolerance && ratio < 1 + closing)) break;
     const double aim = attempt < 3 ? 1 : 1.01;
-    const double factor = std::clamp(std::sqrt(ratio / aim), 0.5, 2.0);
+    excess += std::log(ratio) - asked;
+    const double mean_excess = excess / (attempt + 1);
+    const double more = std::clamp(std::log(aim) - mean_excess - asked, -1.4, 1.4);
+    asked += more;
     if (!borders_.empty()) {
-      has_room = fit_lengths_to_borders(1 / (factor * factor));
+      has_room = fit_lengths_to_borders(std::exp(more));
       if (!has_room) break;
     } else {
-      lengths_ = graded(graph(), scaled(lengths_, factor), growth(), context_);
+      lengths_ = graded(graph(), scaled(lengths_, std::exp(-more / 2)), growth(), context_);
     }
   }
   const double ratio = target_.count_ratio(extraction_.mesh);
-  if (has_room && ratio > 1 + tolerance && ratio < 1.35) {
-    stage_("extraction", [&] { take_away_faces(tolerance); });
+  if (has_room && ratio > 1 + tolerance && ratio < 1.35 && !take_strips()) {
+    stage_("extraction", [&] {
+      reduce_faces(extraction_, posy_of(options_.faces),
+                   target_.faces_to_close(extraction_.mesh, tolerance), context_);
+    });
   }
   if (extraction_.mesh.faces.empty()) {
     throw Error(
@@ -258,8 +281,9 @@ void Pipeline::position_and_extract() {
   result_.report.edge_length = fields().position.edge_length[0] * frame_.scale;
 }
 
-void Pipeline::take_away_faces(double tolerance) {
-  if (options_.faces == OutputFaces::quads) {
+bool Pipeline::take_strips() {
+  if (options_.faces != OutputFaces::quads) return false;
+  return stage_("extraction", [&] {
     Extraction quads = extraction_;
     split(quads);
     const auto count = static_cast<double>(quads.mesh.faces.size());
@@ -267,14 +291,11 @@ void Pipeline::take_away_faces(double tolerance) {
     constexpr double one_percent = 0.0099;  // strips are long: all that may be
     const auto least = static_cast<std::size_t>(std::ceil(count - (1 + one_percent) * wanted));
     const auto most = static_cast<std::size_t>(count - (1 - one_percent) * wanted);
-    if (remove_strips(quads, least, most, context_)) {
-      extraction_ = std::move(quads);
-      is_split_ = true;
-      return;
-    }
-  }
-  reduce_faces(extraction_, posy_of(options_.faces),
-               target_.faces_to_close(extraction_.mesh, tolerance), context_);
+    if (!remove_strips(quads, least, most, context_)) return false;
+    extraction_ = std::move(quads);
+    is_split_ = true;
+    return true;
+  });
 }
 
 void Pipeline::count_singularities() {
@@ -298,9 +319,9 @@ void Pipeline::smooth_faces() {
     // The more regular, the more the grid must stretch. Triangles of one size are regular; the
     // triangles among quads are smaller than these.
     if (options_.faces == OutputFaces::quads) {
-      smoothing.evenness = 0.59 + 0.12 * options_.regularity;
+      smoothing.evenness = 0.59 + 0.18 * options_.regularity;
     }
-    if (options_.faces == OutputFaces::triangles) smoothing.evenness = 0.87;
+    if (options_.faces == OutputFaces::triangles) smoothing.evenness = 0.85;
     if (options_.faces == OutputFaces::quad_dominant) smoothing.evenness = 0.48;
     const EdgeLength& lengths = fields().position.edge_length;
     if (!lengths.uniform() && nodes_are_vertices_) smoothing.relative_size = lengths;
@@ -419,11 +440,11 @@ PositionField Pipeline::solve_positions() {
 
 double Pipeline::cancelling_cost() const {
   if (options_.regularity >= 1) return std::numeric_limits<double>::infinity();
-  const double least = options_.faces == OutputFaces::quads           ? 2.5
-                       : options_.faces == OutputFaces::quad_dominant ? 5.4
-                                                                      : 6;
+  const double least = options_.faces == OutputFaces::quads           ? 3
+                       : options_.faces == OutputFaces::quad_dominant ? 5.2
+                                                                      : 4.8;
   // Sizes that vary need the dislocations where rows end.
-  const double regularity = options_.regularity / (lengths_.uniform() ? 1 : 2);
+  const double regularity = options_.regularity / (lengths_.uniform() ? 1 : 5);
   return least * (1 + 2 * regularity / (1 - regularity));
 }
 

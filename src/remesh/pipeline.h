@@ -52,8 +52,9 @@ class Pipeline {
   RemeshResult result() &&;
 
  private:
-  /// Whole strips if that can be, else single faces.
-  void take_away_faces(double tolerance);
+  /// Takes strips of quads away until there are no more faces than wanted. Returns whether that can
+  /// be: what is left is split then.
+  bool take_strips();
   void drop_pieces();
 
   /// Guides onto the surface: those that edges must follow are cut into it.
@@ -62,6 +63,8 @@ class Pipeline {
   /// Sorts the surface along a curve, and all that goes with its vertices.
   std::vector<Index> put_in_order();
 
+  /// How many faces lengths must be for, for each one that is wanted.
+  double faces_to_ask_for() const;
   /// Lengths that have so many times the faces, but are what borders that stay need there. Returns
   /// whether there are any.
   bool fit_lengths_to_borders(double more_faces);

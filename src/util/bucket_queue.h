@@ -14,12 +14,20 @@ namespace meshgrain {
 /// gets any cheaper; else it may have to be looked at again.
 class BucketQueue {
  public:
-  explicit BucketQueue(float width) : width_(width) { first_.fill(none); }
+  explicit BucketQueue(float width) : width_(width) { clear(); }
 
   struct Entry {
     float cost;
     std::uint32_t item;
   };
+
+  void clear() {
+    first_.fill(none);
+    nodes_.clear();
+    later_.clear();
+    start_ = 0;
+    lowest_ = count;
+  }
 
   void push(float cost, std::uint32_t item) {
     const float place = (cost - start_) / width_;
@@ -45,6 +53,8 @@ class BucketQueue {
     for (const Entry& entry : std::exchange(later_, {})) push(entry.cost, entry.item);
     return true;
   }
+  /// No entry that is left costs less than that, but for rounding.
+  float least() const { return start_ + static_cast<float>(lowest_) * width_; }
   Entry pop() {
     const Node& node = nodes_[first_[lowest_]];
     first_[lowest_] = node.next;
