@@ -39,7 +39,7 @@ void check(const RemeshOptions& options) {
   if (options.lock_borders && options.graph.nodes == GraphNodes::faces) {
     throw Error("borders can be locked over the input's vertices, not over its faces");
   }
-  if (options.solver.sweeps < 1) throw Error("at least one sweep a level is needed");
+  if (options.solver.sweeps < 0) throw Error("a number of sweeps cannot be negative");
 }
 
 /// All that does not depend on the number of faces, but as fine as the target needs it: what it

@@ -87,6 +87,7 @@ TEST(Locality, SweepsReachOneEdgeFurtherEach) {
   const Mesh mesh = sample_shape("bracket");
   const float rho = 4 * static_cast<float>(edge_lengths(mesh).mean);
   SolverOptions options;
+  options.sweeps = 6;
   options.schedule = Schedule::jacobi;
   options.multiresolution = false;
   const Solved whole = solve(mesh, rho, options);

@@ -214,6 +214,7 @@ TYPED_TEST(PoSyTest, MatchesLikeWiderSearchesOnAverage) {
     orientation.rosy = S;
     PositionOptions position;
     position.posy = S;
+    orientation.sweeps = position.sweeps = 6;
     const float rho = 4 * static_cast<float>(edge_lengths(sample_shape(shape, 0.5)).mean);
     const auto directions = solve_orientation(hierarchy, orientation).directions;
     const auto points = solve_position(hierarchy, {S, directions}, rho, position).points;

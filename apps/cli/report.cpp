@@ -109,7 +109,7 @@ Json to_json(const RemeshOptions& o) {
                {"orientation_energy", energies[static_cast<int>(o.orientation_energy)]},
                {"position_energy", energies[static_cast<int>(o.position_energy)]},
                {"solver", schedules[static_cast<int>(o.solver.schedule)]},
-               {"sweeps", o.solver.sweeps},
+               {"sweeps", o.solver.sweeps > 0 ? Json(o.solver.sweeps) : Json("auto")},
                {"multiresolution", o.solver.multiresolution},
                {"seed", o.solver.seed},
                {"boundaries", o.features.align_border},

@@ -11,6 +11,7 @@
 #include "extract/disk_clusters.h"
 #include "features/feature_jumps.h"
 #include "field/posy.h"
+#include "util/collect.h"
 
 namespace meshgrain {
 namespace {
@@ -142,9 +143,7 @@ class Collapse {
       float deviation;
       Jump jump;
     };
-    constexpr std::size_t grain = 4096;
-    std::vector<std::vector<Found>> found((graph_.size() + grain - 1) / grain);
-    context.for_ranges(graph_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    const auto look = [&](std::size_t begin, std::size_t end, std::vector<Found>& out) {
       for (auto i = static_cast<Index>(begin); i < end; ++i) {
         const Index a = vertex[disks_.root[i]];
         if (a >= cut) continue;
@@ -156,18 +155,16 @@ class Collapse {
           const Index h = b < cut ? halfedge_between(a, b) : no_index;
           if (h == no_index) continue;
           const Jump jump = disks_.between_roots(i, j, jumps.jump(i, j, hold(i), hold(j), false));
-          found[begin / grain].push_back(
+          out.push_back(
               {h / 2, deviation(a, b, jump.t), h % 2 == 0 ? jump : reversed(jump, lattice_.posy)});
         }
       }
-    });
+    };
     std::vector<float> least(jumps_.size(), std::numeric_limits<float>::infinity());
-    for (const std::vector<Found>& part : found) {
-      for (const Found& other : part) {
-        if (!(other.deviation < least[other.edge])) continue;
-        least[other.edge] = other.deviation;
-        jumps_[other.edge] = other.jump;
-      }
+    for (const Found& other : collect<Found>(graph_.size(), look, context)) {
+      if (!(other.deviation < least[other.edge])) continue;
+      least[other.edge] = other.deviation;
+      jumps_[other.edge] = other.jump;
     }
   }
 

@@ -68,19 +68,19 @@ class Multiresolution {
     sweep(context);
     ++sweep_;
     if (options_.record_energy) energies_.push_back({level_, sweep_, energy(context)});
-    if (sweep_ >= options_.sweeps && level_ > 0) descend(context);
+    if (sweep_ >= sweeps() && level_ > 0) descend(context);
     return true;
   }
 
   int level() const { return level_; }
-  bool done() const { return level_ == 0 && sweep_ >= options_.sweeps; }
+  bool done() const { return level_ == 0 && sweep_ >= sweeps(); }
 
   double progress() const {
     if (done()) return 1;
     // A level is twice the work of the next coarser one.
     const auto n = static_cast<double>(hierarchy_.levels[0].size());
     const auto m = static_cast<double>(graph().size());
-    return std::min(1.0, m / n * (1.0 + sweep_ / std::max(1.0, 1.0 * options_.sweeps)) / 2);
+    return std::min(1.0, m / n * (1.0 + 1.0 * sweep_ / sweeps()) / 2);
   }
 
   const std::vector<Value>& values() const { return values_; }
@@ -92,7 +92,7 @@ class Multiresolution {
     active_.clear();
     held_.clear();
     level_ = 0;
-    sweep_ = options_.sweeps;
+    sweep_ = sweeps();
     enter_level();
   }
 
@@ -147,6 +147,13 @@ class Multiresolution {
 
   int coarsest() const { return static_cast<int>(hierarchy_.levels.size()) - 1; }
   const Graph& graph() const { return hierarchy_.levels[static_cast<std::size_t>(level_)]; }
+
+  /// On the current level.
+  int sweeps() const {
+    if (options_.sweeps > 0) return options_.sweeps;
+    constexpr int fine_levels = 3;
+    return options_.multiresolution && level_ < fine_levels ? 2 : 6;
+  }
 
   void enter_level() {
     if (options_.schedule != Schedule::random_order) coloring_ = color_blocks(graph());

@@ -24,35 +24,22 @@ class Mending {
         context_(context) {}
 
   void run() {
-    // With as many rings of faces around the bad ones as it takes.
-    std::vector<std::uint8_t> inherent(mesh_.faces.size(), 0);  // beside crossings of the surface
-    for (const int rings : {2, 3, 5}) {
-      const auto crossings = find_crossings(mesh_, context_);
-      if (crossings.empty()) break;
-      std::size_t tried = 0;
-      // Each of the many pairs in a place that cannot be mended has about the same place.
-      std::vector<std::size_t> failed(mesh_.faces.size(), 0);
-      for (const auto& [f, g] : crossings) {
-        if (inherent[f] || inherent[g] || std::min(failed[f], failed[g]) >= tries) continue;
-        if (penetration(mesh_, f, g) == 0) continue;
-        Place place = around(f, g, rings);
-        if (surface_crosses(place)) {
-          inherent[f] = inherent[g] = 1;
-          continue;
-        }
-        if (++tried > most_tried) break;
-        --place.crossings;
-        if (part(place)) continue;
-        restore(place);
-        for (const Index h : place.faces) ++failed[h];
-      }
-    }
-    search_.keep_apart({});
     // Across a fold that is narrower than a face, faces cannot look where the surface does there.
     constexpr Demands ever_less[] = {{true, 0.1f}, {false, 0.1f}, {false, 0}};
+    // With as many rings of faces around the bad ones as it takes.
+    constexpr int wider[] = {2, 3, 5};
+    std::vector<std::uint8_t> inherent(mesh_.faces.size(), 0);
     for (const Demands& demands : ever_less) {
       demands_ = demands;
-      for (const int rings : {2, 3, 5}) reshape_all(rings);
+      bool few = true;
+      for (const int rings : wider) few = part_all(rings, inherent) && few;
+      // Poor faces are worth it only for a result that passes through itself nowhere.
+      if (!few || std::ranges::count(inherent, 1) > 0) break;
+    }
+    search_.keep_apart({});
+    for (const Demands& demands : ever_less) {
+      demands_ = demands;
+      for (const int rings : wider) reshape_all(rings);
     }
   }
 
@@ -78,6 +65,29 @@ class Mending {
   static constexpr std::size_t most_tried = 50;
   static constexpr std::size_t tries = 6;              // that a face takes part in without success
   static constexpr std::size_t most_searched = 20000;  // faces of the surface in a place
+
+  /// `inherent` tells the faces beside crossings of the surface itself. Returns false if there are
+  /// too many places.
+  bool part_all(int rings, std::vector<std::uint8_t>& inherent) {
+    std::size_t tried = 0;
+    // Each of the many pairs in a place that cannot be mended has about the same place.
+    std::vector<std::size_t> failed(mesh_.faces.size(), 0);
+    for (const auto& [f, g] : find_crossings(mesh_, context_)) {
+      if (inherent[f] || inherent[g] || std::min(failed[f], failed[g]) >= tries) continue;
+      if (penetration(mesh_, f, g) == 0) continue;
+      Place place = around(f, g, rings);
+      if (surface_crosses(place)) {
+        inherent[f] = inherent[g] = 1;
+        continue;
+      }
+      if (++tried > most_tried) return false;
+      --place.crossings;
+      if (part(place)) continue;
+      restore(place);
+      for (const Index h : place.faces) ++failed[h];
+    }
+    return true;
+  }
 
   void reshape_all(int rings) {
     std::size_t tried = 0;

@@ -319,7 +319,7 @@ void Pipeline::smooth_faces() {
     // The more regular, the more the grid must stretch. Triangles of one size are regular; the
     // triangles among quads are smaller than these.
     if (options_.faces == OutputFaces::quads) {
-      smoothing.evenness = 0.59 + 0.18 * options_.regularity;
+      smoothing.evenness = 0.62 + 0.12 * options_.regularity;
     }
     if (options_.faces == OutputFaces::triangles) smoothing.evenness = 0.85;
     if (options_.faces == OutputFaces::quad_dominant) smoothing.evenness = 0.48;
@@ -440,7 +440,7 @@ PositionField Pipeline::solve_positions() {
 
 double Pipeline::cancelling_cost() const {
   if (options_.regularity >= 1) return std::numeric_limits<double>::infinity();
-  const double least = options_.faces == OutputFaces::quads           ? 3
+  const double least = options_.faces == OutputFaces::quads           ? 3.1
                        : options_.faces == OutputFaces::quad_dominant ? 5.2
                                                                       : 4.8;
   // Sizes that vary need the dislocations where rows end.
