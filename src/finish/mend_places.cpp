@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -24,22 +25,11 @@ class Mending {
         context_(context) {}
 
   void run() {
-    // Across a fold that is narrower than a face, faces cannot look where the surface does there.
-    constexpr Demands ever_less[] = {{true, 0.1f}, {false, 0.1f}, {false, 0}};
-    // With as many rings of faces around the bad ones as it takes.
-    constexpr int wider[] = {2, 3, 5};
-    std::vector<std::uint8_t> inherent(mesh_.faces.size(), 0);
-    for (const Demands& demands : ever_less) {
-      demands_ = demands;
-      bool few = true;
-      for (const int rings : wider) few = part_all(rings, inherent) && few;
-      // Poor faces are worth it only for a result that passes through itself nowhere.
-      if (!few || std::ranges::count(inherent, 1) > 0) break;
-    }
+    part_crossings();
     search_.keep_apart({});
     for (const Demands& demands : ever_less) {
       demands_ = demands;
-      for (const int rings : wider) reshape_all(rings);
+      for (const int rings : ever_wider) reshape_all(rings);
     }
   }
 
@@ -59,6 +49,10 @@ class Mending {
     float quality;
   };
 
+  // Across a fold that is narrower than a face, faces cannot look where the surface does there.
+  static constexpr Demands ever_less[] = {{true, 0.1f}, {false, 0.1f}, {false, 0}};
+  static constexpr int ever_wider[] = {2, 3, 5};  // rings of faces around the bad ones
+
   static constexpr std::size_t largest_to_slide = 80;  // faces of a place: it takes long
   static constexpr std::size_t most_crossings_to_slide = 25;
   // A mesh with more bad places is too coarse for its surface: no need to try for minutes.
@@ -66,13 +60,28 @@ class Mending {
   static constexpr std::size_t tries = 6;              // that a face takes part in without success
   static constexpr std::size_t most_searched = 20000;  // faces of the surface in a place
 
-  /// `inherent` tells the faces beside crossings of the surface itself. Returns false if there are
-  /// too many places.
-  bool part_all(int rings, std::vector<std::uint8_t>& inherent) {
+  void part_crossings() {
+    std::vector<std::uint8_t> inherent(mesh_.faces.size(), 0);  // beside crossings of the surface
+    for (const Demands& demands : ever_less) {
+      demands_ = demands;
+      bool few = true;
+      for (const int rings : ever_wider) {
+        const auto crossings = find_crossings(mesh_, context_);
+        if (crossings.empty()) return;
+        few = part_all(crossings, rings, inherent) && few;
+      }
+      // Poor faces are worth it only for a result that passes through itself nowhere.
+      if (!few || std::ranges::count(inherent, 1) > 0) return;
+    }
+  }
+
+  /// Returns false if there are too many places.
+  bool part_all(const std::vector<std::array<Index, 2>>& crossings, int rings,
+                std::vector<std::uint8_t>& inherent) {
     std::size_t tried = 0;
     // Each of the many pairs in a place that cannot be mended has about the same place.
     std::vector<std::size_t> failed(mesh_.faces.size(), 0);
-    for (const auto& [f, g] : find_crossings(mesh_, context_)) {
+    for (const auto& [f, g] : crossings) {
       if (inherent[f] || inherent[g] || std::min(failed[f], failed[g]) >= tries) continue;
       if (penetration(mesh_, f, g) == 0) continue;
       Place place = around(f, g, rings);
@@ -270,7 +279,7 @@ class Mending {
   Placement& placement_;
   LocalSearch& search_;
   bool corners_stay_;
-  Demands demands_{true, 0.1f};
+  Demands demands_ = ever_less[0];
   const Context& context_;
 };
 
