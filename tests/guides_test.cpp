@@ -83,11 +83,9 @@ std::vector<Strokes> all_strokes() {
 TEST(Guides, AreFollowed) {
   for (const auto& [name, shape, guides] : all_strokes()) {
     const Mesh input = sample_shape(shape);
-    for (const std::size_t squares : {1000, 5000}) {
+    for (const std::size_t count : {1000, 5000}) {
       for (const OutputFaces faces :
            {OutputFaces::quads, OutputFaces::quad_dominant, OutputFaces::triangles}) {
-        // Edges of about the same length: a chord of a curve turns from it by half of its length.
-        const std::size_t count = faces == OutputFaces::triangles ? 23 * squares / 10 : squares;
         SCOPED_TRACE(std::string(name) + " on " + shape + ", " + std::to_string(count) + ", kind " +
                      std::to_string(static_cast<int>(faces)));
         RemeshOptions options;

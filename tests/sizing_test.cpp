@@ -293,10 +293,7 @@ TEST_P(PaintedHalves, FourTimesTheDensityIsAQuarterOfTheArea) {
   // A thousand faces have hardly room for a slow change, and come in few rows.
   const bool few = count < 2000;
   if (few) options.sizing.grading = 4;
-  // The side of a square, or of a triangle that has its area.
-  const double side = kind == OutputFaces::triangles ? 2 / std::sqrt(std::sqrt(3)) : 1;
-  const double coarse_side =
-      side * std::sqrt(surface_area(mesh) / 2 / (static_cast<double>(count) / 5));
+  const double coarse_side = std::sqrt(surface_area(mesh) / 2 / (static_cast<double>(count) / 5));
   const double transition = (few ? 2 : 4) * coarse_side;
   const Mesh by_number = remesh(mesh, options).mesh;
   EXPECT_NEAR(static_cast<double>(by_number.faces.size()) / static_cast<double>(count), 1, 0.0101);

@@ -81,8 +81,7 @@ class Cancelling {
     context_.for_ranges(starts.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         Start& start = starts_[starts[k]];
-        const bool is_unit = lattice_.metric().squared_length(lattice_.sum(start.h).t) == 1;
-        start.path = searches_.local().from(start.h, lattice_.posy, is_unit);
+        start.path = searches_.local().from(start.h);
         start.found = now_;
       }
     });

@@ -240,12 +240,11 @@ void put_roots_in_the_middle(DiskClusters& disks, const Graph& graph,
     Index& best = middle[disks.root[i]];
     if (distance(i) < distance(best)) best = i;
   }
-  const auto turn_back = [&](int rotation) { return rotation == 0 ? 0 : disks.posy - rotation; };
   const std::vector<std::uint8_t> from_old = disks.rotation;
   for (Index i = 0; i < graph.size(); ++i) {
     Index& root = disks.root[i];
-    const int whole = from_old[i] + turn_back(from_old[middle[root]]);
-    disks.rotation[i] = static_cast<std::uint8_t>(whole < disks.posy ? whole : whole - disks.posy);
+    const int turn = from_old[i] + disks.posy - from_old[middle[root]];
+    disks.rotation[i] = static_cast<std::uint8_t>(turn % disks.posy);
     root = middle[root];
   }
 }
@@ -253,9 +252,8 @@ void put_roots_in_the_middle(DiskClusters& disks, const Graph& graph,
 }  // namespace
 
 Jump DiskClusters::between_roots(Index i, Index j, const Jump& jump) const {
-  const int back = rotation[j] == 0 ? 0 : posy - rotation[j];
-  const Jump inner = composed({rotation[i], {0, 0}}, jump, posy);
-  return composed(inner, {back, {0, 0}}, posy);
+  const Jump from_root{rotation[i], {0, 0}}, to_root = reversed({rotation[j], {0, 0}}, posy);
+  return composed(composed(from_root, jump, posy), to_root, posy);
 }
 
 DiskClusters find_disk_clusters(const Mesh& surface, const Graph& graph,

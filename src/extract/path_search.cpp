@@ -19,12 +19,12 @@ void PathSearch::visit(float cost, const State& to, Origin origin) {
   queue_.push(cost, number);
 }
 
-PathSearch::Path PathSearch::from(Index start, int posy, bool is_unit) {
+PathSearch::Path PathSearch::from(Index start) {
   ++search_;
   queue_.clear();
   // A singularity costs two irregular vertices. At the end of the path another may vanish as well,
   // so that a longer path can be the cheaper one for each of them.
-  const int here = is_unit ? 2 : 1;
+  const int here = carrier_.loss(start);
   Path best;
   best.cost = most_;
   bound_ = best.cost * (here + 2);
@@ -32,7 +32,7 @@ PathSearch::Path PathSearch::from(Index start, int posy, bool is_unit) {
     const std::uint32_t place = region(h);
     if (std::exchange(last_search_[place], search_) != search_) best.regions.push_back(place);
   };
-  for (int unit = 0; unit < posy; ++unit) {
+  for (int unit = 0; unit < carrier_.units(); ++unit) {
     State out{start, unit};
     if (!carrier_.shortens(out)) continue;
     for (int side = 0; side < 3; ++side, out = carrier_.along(out)) {
@@ -44,8 +44,7 @@ PathSearch::Path PathSearch::from(Index start, int posy, bool is_unit) {
                          third = carrier_.back({start, 0}).h](Index h) {
     return h == start || h == second || h == third;
   };
-  constexpr std::uint32_t none = ~std::uint32_t{0};
-  std::uint32_t last = none;
+  std::uint32_t last = no_index;
   while (queue_.find() && queue_.least() < bound_) {
     const auto [cost, number] = queue_.pop();
     if (cost > visits_[number].cost || cost >= bound_) continue;
@@ -68,7 +67,7 @@ PathSearch::Path PathSearch::from(Index start, int posy, bool is_unit) {
             side == 0 ? previous_edge : edge_before);
     }
   }
-  while (last != none) {
+  while (last != no_index) {
     const State out = carrier_.across(carrier_.state(last));
     best.steps.push_back(out);
     const auto origin = static_cast<Origin>(visits_[last].when % 4);

@@ -26,7 +26,7 @@ class PathSearch {
 
   /// From the triangle left of h; without any steps if there is none. It is the same whatever was
   /// searched before.
-  Path from(Index h, int posy, bool is_unit);
+  Path from(Index h);
 
  private:
   using State = UnitCarrier::State;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 namespace meshgrain {
+
 UnitCarrier::UnitCarrier(const LatticeMesh& lattice)
     : lattice_(lattice),
       map_(lattice.map),
@@ -48,6 +49,10 @@ Jump UnitCarrier::left(const State& out) const {
   const auto u = vector(out.unit);
   jump.t = {jump.t[0] - u[0], jump.t[1] - u[1]};
   return jump;
+}
+
+int UnitCarrier::loss(Index h) const {
+  return lattice_.metric().squared_length(lattice_.sum(h).t) == 1 ? 2 : 1;
 }
 
 bool UnitCarrier::shortens(const State& out) const {

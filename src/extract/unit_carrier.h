@@ -48,6 +48,12 @@ class UnitCarrier {
     return {PolygonMap::twin(s.h), rotated(s.unit, turns_[s.h])};
   }
 
+  /// What a unit can be: 0 to this less one.
+  int units() const { return posy_; }
+
+  /// How many irregular vertices vanish where a unit leaves the triangle of h for good.
+  int loss(Index h) const;
+
   /// How many irregular vertices vanish if what has entered by `in` stays there; nothing if it can
   /// only pass.
   std::optional<int> gain(const State& in) const;
