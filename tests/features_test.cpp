@@ -80,12 +80,25 @@ TEST(Features, CreasesAndCornersAreKept) {
         const Mesh output = remesh(input, options).mesh;
         made::expect_same_topology(mesh_statistics(output), mesh_statistics(input));
         const made::Kept kept = made::kept_creases(input, output);
-        // Long chords leave a small circle by more than a tenth of an edge.
-        const bool long_edges = count < 5000 || faces == OutputFaces::triangles;
-        EXPECT_GE(kept.creases, long_edges ? 0.97 : 0.99);
+        EXPECT_GE(kept.creases, faces == OutputFaces::triangles ? 0.97 : 0.99);
         EXPECT_EQ(kept.corners, 1);
       }
     }
+  }
+}
+
+/// Lattices of 4 and of 5 cells meet on the sides of the first two.
+TEST(Features, EdgesOfADenseCubeStayStraight) {
+  const Mesh input = sample_shape("cube", 4);
+  for (const std::size_t count : {500, 550, 5000}) {
+    SCOPED_TRACE(count);
+    RemeshOptions options;
+    options.face_count = count;
+    const Mesh output = remesh(input, options).mesh;
+    const made::Kept kept = made::kept_creases(input, output);
+    EXPECT_GT(kept.creases, 0.9999);
+    EXPECT_EQ(kept.corners, 1);
+    for (const Vec3& p : output.positions) EXPECT_NEAR(p.cwiseAbs().maxCoeff(), 0.5, 1e-4);
   }
 }
 

@@ -122,6 +122,29 @@ TEST(Finish, ThinWallsDoNotPassThroughEachOther) {
   }
 }
 
+/// Both ends of the line are at the same place, and the vertices there are corners.
+TEST(Finish, ChordsKnowWhichEndIsMeant) {
+  FeatureLines line;
+  line.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 0}};
+  line.vertices = {0, 1, 2, 3, 4};
+  line.starts.push_back(5);
+  line.corners = {0, 4};
+  Extraction loop;
+  loop.mesh.positions = line.positions;
+  loop.nodes = line.vertices;
+  loop.corners = {0, 4};
+  for (Index k = 0; k < 4; ++k) loop.line_edges.push_back({k, k + 1, 0});
+  const Rails rails(loop, line);
+  const Chords chords(loop.mesh, loop.line_edges, rails);
+  EXPECT_EQ(chords.way(0, 0, 1), 0);
+  EXPECT_EQ(chords.way(4, 0, 3), 4);
+  for (const Index v : {1, 2, 3}) EXPECT_EQ(chords.cut_off(v), 0) << v;
+  loop.mesh.positions[3] = {0, 0.97f, 0};  // cuts the corner off at (0, 1), but not by much
+  EXPECT_EQ(chords.cut_off(3), 0);
+  loop.mesh.positions[3] = {0, 0.5f, 0};
+  EXPECT_GT(chords.cut_off(3), 0.02);
+}
+
 /// A row of quads whose lower side follows a line with spikes.
 TEST(Finish, EdgesCutOffLessOfARaggedLine) {
   FeatureLines line;
@@ -155,7 +178,10 @@ TEST(Finish, EdgesCutOffLessOfARaggedLine) {
   };
   EXPECT_GT(farthest_spike(), 0.5f);
   Rails rails(row, line);
-  fit_to_rails(row.mesh, row.line_edges, rails);
+  const Chords chords(row.mesh, row.line_edges, rails);
+  const double before = chords.cut_off(2) + chords.cut_off(4);
+  fit_to_rails(row.mesh, chords, rails);
+  EXPECT_LT(chords.cut_off(2) + chords.cut_off(4), before / 2);
   EXPECT_LT(farthest_spike(), 0.35f);
   EXPECT_EQ(row.mesh.positions[0], lower[0]);
   EXPECT_EQ(row.mesh.positions[5], lower[5]);

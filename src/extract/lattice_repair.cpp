@@ -6,9 +6,12 @@
 #include <cstdint>
 #include <numbers>
 #include <numeric>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
+
+#include "util/edge_of.h"
 
 namespace meshgrain {
 namespace {
@@ -41,8 +44,8 @@ class LatticeRepair {
       bool changed = collapse_zero_edges();
       changed = flip_edges() || changed;
       changed = swing_edges() || changed;
-      if (changed || shift_vertices() || collapse_flawed() || fill_in()) continue;
-      return;
+      changed = changed || unfold_lines() || shift_vertices() || collapse_flawed() || fill_in();
+      if (!changed) return;
     }
   }
 
@@ -233,6 +236,35 @@ class LatticeRepair {
     return any;
   }
 
+  /// Takes vertices away where a feature line goes back the way that it came.
+  bool unfold_lines() {
+    bool any = false;
+    for (Index v = 0; v < map_.vertices(); ++v) {
+      if (map_.leaving(v) == no_index || lattice_.hold[v] != on_line) continue;
+      const Index h = folded_edge(v);
+      if (h == no_index || !lattice_.may_collapse(PolygonMap::twin(h))) continue;
+      const Index kept = map_.target(h);
+      lattice_.collapse_edge(PolygonMap::twin(h));
+      touch_star(kept);
+      any = true;
+    }
+    return any;
+  }
+
+  /// One of the two edges of a feature line that leave a vertex by the same jump, or no_index.
+  Index folded_edge(Index v) const {
+    Index first = no_index, folded = no_index;
+    lattice_.for_each_leaving(v, [&](Index h) {
+      if (!lattice_.on_feature(h)) return;
+      if (first == no_index) {
+        first = h;
+      } else if (lattice_.jump(h).t == lattice_.jump(first).t) {
+        folded = h;
+      }
+    });
+    return folded;
+  }
+
   /// Gives vertices with flawed triangles another place in the lattice.
   bool shift_vertices() {
     bool any = false;
@@ -313,6 +345,8 @@ class LatticeRepair {
       const auto t = lattice_.jump(h).t;
       const int parts = std::gcd(t[0], t[1]);
       if (parts < 2) continue;
+      // Where the middle was flawed and went again, it would for ever.
+      if (!split_.insert(edge_of(map_.origin(h), map_.target(h))).second) continue;
       const int first = parts / 2;
       lattice_.split(h, {t[0] / parts * first, t[1] / parts * first});
       touch_star(map_.target(h));
@@ -401,6 +435,7 @@ class LatticeRepair {
     const Jump* best = nullptr;
     const Jump ways[2] = {composed(xb, bc, posy), composed(xa, reversed(ca, posy), posy)};
     for (const Jump& xc : ways) {
+      if (xc.is_zero()) return false;  // the apex is that corner
       const std::array<Piece, 3> parts{{{{a, b, no_index}, {posy, {ab, reversed(xb, posy), xa}}},
                                         {{b, c, no_index}, {posy, {bc, reversed(xc, posy), xb}}},
                                         {{c, a, no_index}, {posy, {ca, ax, xc}}}}};
@@ -426,6 +461,7 @@ class LatticeRepair {
   std::uint32_t now_ = 0;               // the number of changes so far
   std::vector<std::uint32_t> changed_;  // when each vertex's star last did
   Looked zero_edges_, flips_, swings_[2];
+  std::set<std::array<Index, 2>> split_;
   std::vector<std::uint32_t> sound_;  // when each vertex's star was last found without flaw
 };
 

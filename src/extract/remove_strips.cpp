@@ -131,6 +131,8 @@ class Strips {
       const bool is_border = sides_.at(rung)[1] == no_index;
       const bool along_line = line_edges_.contains(rung) || is_border;
       if (hold_[a] != free_vertex && hold_[b] != free_vertex && !along_line) return false;
+      // The face beyond would lie along two edges of the line, flat at their vertex.
+      if (hold_[a] != free_vertex && !along_line && valence_[b] < 4) return false;
       const std::size_t valence = valence_[a] + valence_[b] - (is_border ? 3 : 4);
       const int before = !is_regular(a, valence_[a]) + !is_regular(b, valence_[b]);
       if (!is_regular(a, valence) && before == 0 && hold_[a] != at_corner) return false;
@@ -212,20 +214,19 @@ void remove(Extraction& extraction, const Strips& strips, const Strip& strip) {
 
 }  // namespace
 
-bool remove_strips(Extraction& extraction, std::size_t least, std::size_t most,
-                   const Context& context) {
-  Extraction reduced = extraction;
-  for (std::size_t done = 0; done < least;) {
+std::size_t remove_strips(Extraction& extraction, std::size_t least, std::size_t most,
+                          const Context& context) {
+  std::size_t done = 0;
+  while (done < least) {
     context.check();
-    const Strips strips(reduced);
-    if (!strips.is_manifold()) return false;
+    const Strips strips(extraction);
+    if (!strips.is_manifold()) break;
     const std::optional<Strip> best = strips.narrowest(most - done);
-    if (!best) return false;
+    if (!best) break;
     done += best->faces.size();
-    remove(reduced, strips, *best);
+    remove(extraction, strips, *best);
   }
-  extraction = std::move(reduced);
-  return true;
+  return done;
 }
 
 }  // namespace meshgrain

@@ -130,7 +130,8 @@ float LocalSearch::quality_among_neighbors(Index f) const {
 /// `limit` on it need not be exact.
 double LocalSearch::lack(Index v, double limit) const {
   constexpr double good = 0.75;
-  double sum = 0;
+  constexpr double against_cutting_off = 100;  // only what is turned over weighs more
+  double sum = against_cutting_off * placement_.cut_off(v);
   for (const Index f : around_[v]) {
     const double q = quality_here(f);
     const double best = std::sin(2 * std::numbers::pi / static_cast<double>(mesh_.faces.degree(f)));

@@ -9,6 +9,7 @@ Placement::Placement(Extraction& extraction, const Mesh& surface, const Graph& g
     : extraction_(extraction),
       projector_(surface, graph, context),
       rails_(extraction, lines),
+      chords_(extraction.mesh, extraction.line_edges, rails_),
       tether_(extraction.mesh.positions.size(), no_index) {
   for (const Index v : extraction.corners) {
     extraction.mesh.positions[v] = surface.positions[extraction.nodes[v]];

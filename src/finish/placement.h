@@ -29,7 +29,10 @@ class Placement {
   void tether(std::size_t v, const Vec3& p, Index node, const Vec3& end, float radius);
 
   /// Slides vertices along lines to where the edges between them cut off less.
-  void fit_lines() { fit_to_rails(extraction_.mesh, extraction_.line_edges, rails_); }
+  void fit_lines() { fit_to_rails(extraction_.mesh, chords_, rails_); }
+
+  /// How much the two edges along the line of v cut off of it, see Chords.
+  double cut_off(Index v) const { return chords_.cut_off(v); }
 
   /// Lets v leave the line that holds it. Returns whether there was one.
   bool release(std::size_t v) { return rails_.release(v, extraction_.nodes[v]); }
@@ -63,6 +66,7 @@ class Placement {
   Extraction& extraction_;
   Projector projector_;
   Rails rails_;
+  Chords chords_;
   std::vector<Tether> tethers_;
   std::vector<Index> tether_;  // of each vertex, or no_index
 };

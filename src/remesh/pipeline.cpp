@@ -291,7 +291,13 @@ bool Pipeline::take_strips() {
     constexpr double one_percent = 0.0099;  // strips are long: all that may be
     const auto least = static_cast<std::size_t>(std::ceil(count - (1 + one_percent) * wanted));
     const auto most = static_cast<std::size_t>(count - (1 - one_percent) * wanted);
-    if (!remove_strips(quads, least, most, context_)) return false;
+    const std::size_t gone = remove_strips(quads, least, most, context_);
+    if (gone < least) {
+      // Single quads for the rest, if these are fewer than the larger ones from before the split.
+      const std::size_t rest = least - gone;
+      if (rest > target_.faces_to_close(extraction_.mesh, one_percent)) return false;
+      if (reduce_faces(quads, 4, rest, context_) < rest) return false;
+    }
     extraction_ = std::move(quads);
     is_split_ = true;
     return true;

@@ -1,0 +1,110 @@
+#include "finish/chords.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "util/triangle.h"
+
+namespace meshgrain {
+namespace {
+
+constexpr double tolerated = 0.06;  // distance of a line from its edges, in their lengths
+
+}  // namespace
+
+Chords::Chords(const Mesh& mesh, std::span<const LineEdge> edges, const Rails& rails)
+    : mesh_(mesh),
+      rails_(rails),
+      ways_(rails.lines().vertices.size(), 0),
+      beside_(mesh.positions.size(), {no_index, no_index}),
+      line_(mesh.positions.size(), no_index) {
+  for (Index line = 0; line < lines().size(); ++line) {
+    for (Index k = lines().begin(line) + 1; k < lines().end(line); ++k) {
+      ways_[k] = ways_[k - 1] + (lines().positions[k] - lines().positions[k - 1]).norm();
+    }
+  }
+  for (const auto& [a, b, line] : edges) {
+    edge_ += (mesh.positions[a] - mesh.positions[b]).norm() / static_cast<double>(edges.size());
+    for (const auto& [v, w] : {std::pair(a, b), std::pair(b, a)}) {
+      if (!slides(v)) continue;
+      beside_[v][beside_[v][0] != no_index] = w;
+      line_[v] = line;
+    }
+  }
+}
+
+std::optional<double> Chords::way(Index v, Index line, double near) const {
+  const Vec3& p = mesh_.positions[v];
+  const auto nearest = [&](double way) {
+    if (!lines().is_closed(line)) return way;
+    return near + std::remainder(way - near, length(line));
+  };
+  if (slides(v)) {
+    const Index segment = rails_.place(v);
+    return nearest(ways_[segment] + (p - lines().positions[segment]).norm());
+  }
+  std::optional<double> best;
+  for (const Index end : {lines().begin(line), lines().end(line) - 1}) {
+    if (p != lines().positions[end]) continue;
+    const double way = nearest(ways_[end]);
+    if (!best || std::abs(way - near) < std::abs(*best - near)) best = way;
+  }
+  return best;
+}
+
+Chords::Stop Chords::stop_at(Index line, double way) const {
+  const Index begin = lines().begin(line), last = lines().end(line) - 1;
+  double here = way;
+  if (lines().is_closed(line)) here -= length(line) * std::floor(way / length(line));
+  const auto above = std::upper_bound(ways_.begin() + begin + 1, ways_.begin() + last, here);
+  const auto segment = static_cast<Index>(above - ways_.begin()) - 1;
+  const double share =
+      (here - ways_[segment]) / std::max(ways_[segment + 1] - ways_[segment], 1e-30);
+  const Vec3 &a = lines().positions[segment], &b = lines().positions[segment + 1];
+  return {way, segment, a + static_cast<float>(std::clamp(share, 0.0, 1.0)) * (b - a)};
+}
+
+double Chords::cut_off(Index line, const Stop& from, const Stop& to) const {
+  const Index begin = lines().begin(line), last = lines().end(line) - 1;
+  // What the rounds of a closed line add to the ways of its points.
+  double rounds = std::round((from.way - ways_[from.segment]) / length(line)) * length(line);
+  if (!lines().is_closed(line)) rounds = 0;
+  double sum = 0, way_before = from.way, before = 0;
+  for (Index k = from.segment + 1; ways_[k] + rounds < to.way; ++k) {
+    const Vec3& p = lines().positions[k];
+    const Vec3 q = closest_point_on_segment<Vec3>(p, from.position, to.position);
+    const double excess = std::max(0.0, (p - q).norm() / edge_ - tolerated);
+    const double way = ways_[k] + rounds;
+    sum += (before + excess * excess) / 2 * (way - way_before);
+    way_before = way;
+    before = excess * excess;
+    if (k < last) continue;
+    if (!lines().is_closed(line)) break;
+    k = begin;
+    rounds += length(line);
+  }
+  return (sum + before / 2 * (to.way - way_before)) / edge_;
+}
+
+double Chords::cut_off(Index v) const {
+  constexpr double of_fold = 1;  // what is left uncovered where both edges go the same way
+  const Index line = line_[v];
+  if (line == no_index || !slides(v)) return 0;
+  const double here = *way(v, line, 0);
+  const Stop at = stop_at(line, here);
+  double sum = 0;
+  int ahead = 0, back = 0;
+  for (const Index w : beside_[v]) {
+    if (w == no_index) continue;
+    const std::optional<double> there = way(w, line, here);
+    if (!there) continue;
+    const Stop other = stop_at(line, *there);
+    const bool is_back = *there < here;
+    sum += is_back ? cut_off(line, other, at) : cut_off(line, at, other);
+    ++(is_back ? back : ahead);
+  }
+  return std::max(ahead, back) > 1 ? sum + of_fold : sum;
+}
+
+}  // namespace meshgrain
