@@ -51,6 +51,17 @@ TEST(Clean, RemovesDegenerateFaces) {
   EXPECT_EQ(mesh.positions.size(), 3u);
 }
 
+/// Fans of many faces around the lowest vertex, which all have the same lowest corner.
+TEST(Clean, FindsDuplicatesAmongManyFacesAroundAVertex) {
+  Mesh mesh;
+  constexpr Index count = 100000;
+  mesh.positions.resize(count + 2, Vec3::Zero());
+  for (Index v = 1; v <= count; ++v) mesh.faces.push_back(std::array<Index, 3>{0, v, v + 1});
+  for (Index v = 1; v <= count; v += 1000) mesh.faces.push_back(std::array<Index, 3>{v + 1, v, 0});
+  EXPECT_EQ(clean(mesh).duplicate_faces, 100u);
+  EXPECT_EQ(mesh.faces.size(), count);
+}
+
 TEST(Clean, RemovesDuplicateFacesInAnyRotationAndDirection) {
   Mesh mesh = vertices(5);
   mesh.faces.push_back({0, 1, 2, 3});

@@ -378,6 +378,7 @@ void resolve(Arguments& a) {
   }
   o.solver.multiresolution = !a.single_level;
   o.solver.record_energy = !a.report.empty();
+  o.count_singularities = !a.report.empty();
 
   if (!a.levels.empty() && !a.fields_out.empty()) {
     throw UsageError("--fields-out goes with one size, and --lod with several");

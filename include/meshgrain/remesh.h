@@ -29,8 +29,8 @@ struct RemeshOptions {
   OutputFaces faces = OutputFaces::quads;
   int rosy = 0;  ///< 1, 2, 4 or 6; 0: 6 for triangles and hexagons, else 4.
 
-  /// How fine the written mesh is to be: the first of these that is not zero. If all are zero, the
-  /// mesh has a sixteenth of the input's vertices.
+  /// How fine the written mesh is to be: the first of these that is not zero. Counts are met within
+  /// one percent. If all are zero, the mesh has about a sixteenth of the input's vertices.
   double edge_length = 0;  ///< In input units.
   std::size_t face_count = 0;
   std::size_t vertex_count = 0;
@@ -62,6 +62,8 @@ struct RemeshOptions {
   /// Use these instead of solving for an orientation field (and a position field, if that has
   /// points). Values are taken from the nearest node, so the surfaces need not be the same.
   const Fields* fields = nullptr;
+
+  bool count_singularities = true;  ///< For the report: takes a look at every face.
 };
 
 struct StageTime {

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdint>
+#include <numeric>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -12,55 +13,79 @@
 #include "mesh/marks.h"
 #include "meshgrain/surface.h"
 #include "util/edge_of.h"
-#include "util/hash.h"
 #include "util/sort_unique.h"
 #include "util/union_find.h"
 
 namespace meshgrain {
 namespace {
 
+/// Neighbouring corners are known to differ.
 bool repeats_a_vertex(std::span<const Index> face, std::vector<Index>& scratch) {
+  if (face.size() == 3) return false;
   scratch.assign(face.begin(), face.end());
   std::sort(scratch.begin(), scratch.end());
   return std::adjacent_find(scratch.begin(), scratch.end()) != scratch.end();
 }
 
-/// Writes the corners of a face from the lowest on, towards the lower of its two neighbours: the
-/// same for all rotations and both directions.
-void canonical(std::span<const Index> face, std::vector<Index>& result) {
+/// What all rotations of a face have in common, in both directions: the lowest corner, the two
+/// beside it, and their number. Of triangles that is all.
+struct FaceKey {
+  Index lowest, beside, other;
+  std::uint32_t degree;
+  Index face;
+
+  static FaceKey of(std::span<const Index> face, Index number) {
+    const std::size_t n = face.size();
+    const auto low = static_cast<std::size_t>(std::ranges::min_element(face) - face.begin());
+    const auto [beside, other] = std::minmax(face[(low + 1) % n], face[(low + n - 1) % n]);
+    return {face[low], beside, other, static_cast<std::uint32_t>(n), number};
+  }
+  auto whole() const { return std::tuple(beside, other, degree); }
+};
+
+/// The corners of a face from the lowest on, towards the lower of its two neighbours.
+std::vector<Index> canonical(std::span<const Index> face) {
   const std::size_t n = face.size();
-  const std::size_t low =
-      static_cast<std::size_t>(std::min_element(face.begin(), face.end()) - face.begin());
+  const auto low = static_cast<std::size_t>(std::ranges::min_element(face) - face.begin());
   const std::size_t step = face[(low + 1) % n] < face[(low + n - 1) % n] ? 1 : n - 1;
-  result.resize(n);
+  std::vector<Index> result(n);
   for (std::size_t i = 0, at = low; i < n; ++i, at = (at + step) % n) result[i] = face[at];
+  return result;
 }
 
-/// The faces met so far, in a hash table of their numbers in `faces`.
-class FaceSet {
- public:
-  explicit FaceSet(std::size_t capacity)
-      : mask_(std::bit_ceil(2 * capacity + 1) - 1), table_(mask_ + 1, no_index) {}
-
-  /// Whether `face`, about to be added to the end of `faces`, is none of them.
-  bool insert(std::span<const Index> face, const Faces& faces) {
-    canonical(face, wanted_);
-    std::uint64_t hash = wanted_.size();
-    for (const Index v : wanted_) hash = hash64(hash + v + 0x9e3779b97f4a7c15u);
-    std::size_t slot = hash & mask_;
-    for (; table_[slot] != no_index; slot = (slot + 1) & mask_) {
-      canonical(faces[table_[slot]], other_);
-      if (wanted_ == other_) return false;
-    }
-    table_[slot] = static_cast<Index>(faces.size());
-    return true;
+/// Marks all faces that have the corners of an earlier one. Returns their number.
+std::size_t find_duplicates(const Faces& faces, std::size_t vertices,
+                            std::vector<std::uint8_t>& is_duplicate) {
+  // Faces with the same lowest corner are next to each other, without a sort of them all.
+  std::vector<Index> ends(vertices + 1, 0);
+  for (std::size_t f = 0; f < faces.size(); ++f) ++ends[std::ranges::min(faces[f]) + 1];
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<FaceKey> keys(faces.size());
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const FaceKey key = FaceKey::of(faces[f], static_cast<Index>(f));
+    keys[ends[key.lowest]++] = key;
   }
-
- private:
-  std::size_t mask_;
-  std::vector<Index> table_;
-  std::vector<Index> wanted_, other_;
-};
+  std::size_t count = 0;
+  is_duplicate.assign(faces.size(), 0);
+  for (auto first = keys.begin(); first != keys.end();) {
+    const auto last = keys.begin() + ends[first->lowest];
+    if (last - first > 1) {
+      std::sort(first, last, [](const FaceKey& a, const FaceKey& b) {
+        return std::tuple(a.whole(), a.face) < std::tuple(b.whole(), b.face);
+      });
+    }
+    for (auto k = first; k != last; ++k) {
+      for (auto earlier = k; earlier-- != first && earlier->whole() == k->whole();) {
+        if (k->degree > 3 && canonical(faces[k->face]) != canonical(faces[earlier->face])) continue;
+        is_duplicate[k->face] = 1;
+        ++count;
+        break;
+      }
+    }
+    first = last;
+  }
+  return count;
+}
 
 /// Keeps the vertices of this increasing list.
 void keep_vertices(Mesh& mesh, std::span<const Index> kept) {
@@ -126,23 +151,28 @@ CleanReport clean(Mesh& mesh) {
 
   Faces faces;
   faces.reserve(mesh.faces.size(), mesh.faces.corners().size());
-  FaceSet seen(mesh.faces.size());
   std::vector<Index> face, scratch;
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     face.clear();
-    for (const Index v : mesh.faces[f])
+    for (const Index v : std::as_const(mesh.faces)[f])
       if (face.empty() || face.back() != v) face.push_back(v);
     while (face.size() > 1 && face.front() == face.back()) face.pop_back();
     report.repeated_corners += mesh.faces.degree(f) - face.size();
     if (face.size() < 3 || repeats_a_vertex(face, scratch))
       ++report.degenerate_faces;
-    else if (!seen.insert(face, faces))
-      ++report.duplicate_faces;
     else
       faces.push_back(face);
   }
-
-  mesh.faces = std::move(faces);
+  std::vector<std::uint8_t> is_duplicate;
+  report.duplicate_faces = find_duplicates(faces, mesh.positions.size(), is_duplicate);
+  if (report.duplicate_faces > 0) {
+    mesh.faces = {};
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      if (!is_duplicate[f]) mesh.faces.push_back(std::as_const(faces)[f]);
+    }
+  } else {
+    mesh.faces = std::move(faces);
+  }
   report.loose_marks = drop_loose_marks(mesh);
   report.unused_vertices = drop_unused_vertices(mesh);
   return report;

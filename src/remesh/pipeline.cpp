@@ -231,7 +231,7 @@ void Pipeline::orient() {
 
 void Pipeline::position_and_extract() {
   constexpr int attempts = 8;
-  constexpr double tolerance = 0.0095;
+  const double tolerance = target_.tolerance();
   const bool given = options_.fields != nullptr && !options_.fields->position.points.empty();
   double least_error = std::numeric_limits<double>::infinity();
   bool has_room = true;  // beside borders that stay
@@ -253,7 +253,7 @@ void Pipeline::position_and_extract() {
       extraction_ = std::move(found);
       fields().position = std::move(positions);
     }
-    const double closing = attempt < 3 ? tolerance : 0.03;
+    const double closing = attempt < 3 ? tolerance : std::max(tolerance, 0.03);
     if (given || (ratio > 1 - tolerance && ratio < 1 + closing)) break;
     const double aim = attempt < 3 ? 1 : 1.01;
     excess += std::log(ratio) - asked;
@@ -305,7 +305,7 @@ bool Pipeline::take_strips() {
 }
 
 void Pipeline::count_singularities() {
-  if (is_cloud_ || !nodes_are_vertices_) return;
+  if (!options_.count_singularities || is_cloud_ || !nodes_are_vertices_) return;
   stage_("singularities", [&] {
     result_.report.orientation_singularities =
         orientation_singularities(surface_, graph().normals, fields().orientation, context_).size();

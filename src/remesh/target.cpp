@@ -29,6 +29,7 @@ Target::Target(const RemeshOptions& options, std::size_t input_vertices, double 
     faces_ = static_cast<double>(options.face_count);
     cells_ = faces_ / faces_per_cell_;
   } else {
+    is_asked_for_ = options.vertex_count > 0;
     const auto input = static_cast<double>(input_vertices);
     vertices_ = options.vertex_count > 0 ? static_cast<double>(options.vertex_count)
                                          : std::max(1.0, input / 16);
