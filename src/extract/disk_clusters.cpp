@@ -32,26 +32,27 @@ std::vector<std::uint8_t> zero_jumps(const Graph& graph, const OrientationField&
   return rotations;
 }
 
-/// Whether the triangles around a vertex are one closed fan.
-bool is_inside(const Mesh& surface, std::span<const Index> around, Index v) {
-  const auto beyond = [&](Index face, int step) {
-    const auto corners = surface.faces[face];
-    const int k = corners[0] == v ? 0 : corners[1] == v ? 1 : 2;
-    return corners[static_cast<std::size_t>((k + step) % 3)];
-  };
+/// Whether the triangles around a vertex are one closed fan. `rim` gets their edges opposite to it.
+bool is_inside(const Mesh& surface, std::span<const Index> around, Index v,
+               std::vector<std::array<Index, 2>>& rim) {
   if (around.size() < 3) return false;
-  Index face = around[0];
-  for (std::size_t passed = 1; passed <= around.size(); ++passed) {
-    const Index to = beyond(face, 2);
-    Index next = no_index;
-    for (const Index f : around) {
-      if (beyond(f, 1) != to) continue;
-      if (next != no_index) return false;
-      next = f;
+  rim.clear();
+  for (const Index f : around) {
+    const auto corners = surface.faces[f];
+    const std::size_t k = corners[0] == v ? 0 : corners[1] == v ? 1 : 2;
+    rim.push_back({corners[(k + 1) % 3], corners[(k + 2) % 3]});
+  }
+  std::size_t edge = 0;
+  for (std::size_t passed = 1; passed <= rim.size(); ++passed) {
+    std::size_t next = rim.size();
+    for (std::size_t k = 0; k < rim.size(); ++k) {
+      if (rim[k][0] != rim[edge][1]) continue;
+      if (next != rim.size()) return false;
+      next = k;
     }
-    if (next == no_index) return false;
-    if (next == around[0]) return passed == around.size();
-    face = next;
+    if (next == rim.size()) return false;
+    if (next == 0) return passed == rim.size();
+    edge = next;
   }
   return false;
 }
@@ -262,8 +263,9 @@ DiskClusters find_disk_clusters(const Mesh& surface, const Graph& graph,
                                 const Context& context) {
   const VertexFaces around = vertex_faces(surface, context);
   context.for_ranges(graph.size(), 2048, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::array<Index, 2>> rim;
     for (auto v = static_cast<Index>(begin); v < end; ++v) {
-      is_free[v] = is_free[v] && is_inside(surface, around[v], v);
+      is_free[v] = is_free[v] && is_inside(surface, around[v], v, rim);
     }
   });
   const std::vector<std::uint8_t> rotations =

@@ -102,8 +102,8 @@ class FaceRepair {
   bool is_straight(Index to, Index from, const Vec3& normal) const;
   Vec3 face_normal(Index h) const;
   /// By how much the number of irregular vertices falls if the origin of h and the corner opposite
-  /// to it in their quad become one; nothing if they must not.
-  std::optional<int> closing_gain(Index h) const;
+  /// to it in their quad become one; nothing if they must not, or it is less than `least`.
+  std::optional<int> closing_gain(Index h, int least) const;
   /// The same for contracting h between triangles.
   std::optional<int> contraction_gain(Index h);
   void close_quad(Index h);

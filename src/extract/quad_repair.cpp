@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 #include <tuple>
 
 #include "extract/face_repair.h"
@@ -99,14 +100,16 @@ FaceRepair::EdgeChange FaceRepair::best_change(Index h) const {
   for (const Index v : ends) {
     if (static_cast<int>(map_.valence(v)) < regular_valence(clusters_.on_border[v])) return best;
   }
+  int gain_of_removal = (a != 4) + (b != 4);
+  for (const Index v : ends) gain_of_removal += is_irregular(v, 0) - is_irregular(v, -1);
+  // Another edge in its place can gain one at each of its ends: most are done with here.
+  if (gain_of_removal <= -2) return best;
+
   const bool needs_rung[2] = {is_last_rung(h), is_last_rung(t)};
   std::vector<Index> corners = union_halfedges(h);
   for (Index& corner : corners) corner = map_.origin(corner);
   if (has_repeats(corners)) return best;
-
   const auto loses = [&](Index v) { return v == ends[0] || v == ends[1]; };
-  int gain_of_removal = (a != 4) + (b != 4);
-  for (const Index v : ends) gain_of_removal += is_irregular(v, 0) - is_irregular(v, -1);
   const auto keep_better = [&](int gain, double cost, int from, int to) {
     if (cost >= 1e9) return;
     if (gain > best.gain || (gain == best.gain && gain > 0 && cost < best.cost)) {
@@ -171,7 +174,7 @@ void FaceRepair::improve_edges() {
   }
 }
 
-std::optional<int> FaceRepair::closing_gain(Index h) const {
+std::optional<int> FaceRepair::closing_gain(Index h, int least) const {
   if (map_.removed(h) || hole_[h] || map_.degree(h) != 4) return std::nullopt;
   const Index across = map_.next(map_.next(h));
   const Index a = map_.origin(h), c = map_.origin(across);
@@ -179,6 +182,17 @@ std::optional<int> FaceRepair::closing_gain(Index h) const {
   for (const Index v : {a, c}) {
     if (clusters_.on_border[v] || clusters_.hold[v] != free_vertex) return std::nullopt;
   }
+  const auto valence = static_cast<int>(map_.valence(a) + map_.valence(c)) - 2;
+  int gain = is_irregular(a, 0) + is_irregular(c, 0) - (valence != 4);
+  for (const Index v : sides) {
+    if (static_cast<int>(map_.valence(v)) < regular_valence(clusters_.on_border[v]))
+      return std::nullopt;
+    // The last edge that parts an angle of the border which nothing can bend.
+    const bool fixed = clusters_.on_border[v] && clusters_.hold[v] == at_corner;
+    if (fixed && map_.valence(v) <= 3) return std::nullopt;
+    gain += is_irregular(v, 0) - is_irregular(v, -1);
+  }
+  if (gain < least) return std::nullopt;
   // The two may have nothing in common but this face, or other faces would come to touch
   // themselves.
   std::vector<Index> near;
@@ -194,18 +208,7 @@ std::optional<int> FaceRepair::closing_gain(Index h) const {
     const bool side = v == sides[0] || v == sides[1];
     apart = apart && (side || !std::binary_search(near.begin(), near.end(), v));
   });
-  if (!apart) return std::nullopt;
-  const auto valence = static_cast<int>(map_.valence(a) + map_.valence(c)) - 2;
-  int gain = is_irregular(a, 0) + is_irregular(c, 0) - (valence != 4);
-  for (const Index v : sides) {
-    if (static_cast<int>(map_.valence(v)) < regular_valence(clusters_.on_border[v]))
-      return std::nullopt;
-    // The last edge that parts an angle of the border which nothing can bend.
-    const bool fixed = clusters_.on_border[v] && clusters_.hold[v] == at_corner;
-    if (fixed && map_.valence(v) <= 3) return std::nullopt;
-    gain += is_irregular(v, 0) - is_irregular(v, -1);
-  }
-  return gain;
+  return apart ? std::optional(gain) : std::nullopt;
 }
 
 void FaceRepair::close_quad(Index h) {
@@ -217,13 +220,13 @@ void FaceRepair::close_quad(Index h) {
 
 void FaceRepair::close_quads() {
   for (Index h = 0; h < map_.halfedges(); ++h) {
-    if (closing_gain(h).value_or(0) > 0) close_quad(h);
+    if (closing_gain(h, 1)) close_quad(h);
   }
 }
 
 std::size_t FaceRepair::close_quads(std::size_t count) {
   return reduce(
-      count, [&](Index h) { return closing_gain(h); },
+      count, [&](Index h) { return closing_gain(h, std::numeric_limits<int>::min()); },
       [&](Index h) { return map_.target(map_.next(h)); }, [&](Index h) { close_quad(h); });
 }
 

@@ -21,6 +21,18 @@ namespace {
 
 constexpr std::size_t grain = 1024;
 
+/// Of the regular polygon with n corners at a distance of 1 from zero: the turn from one corner to
+/// the next, and the length of the sides.
+struct RegularPolygon {
+  std::complex<float> step;
+  float side;
+
+  static RegularPolygon of(std::size_t n) {
+    const float half_step = std::numbers::pi_v<float> / static_cast<float>(n);
+    return {std::polar(1.0f, 2 * half_step), 2 * std::sin(half_step)};
+  }
+};
+
 /// For every corner of a face, its place in the regular polygon that fits the face best: the face
 /// in its mean plane as complex numbers, of which the first Fourier coefficient is that polygon (in
 /// the least-squares sense, with free size and turn). The size is then drawn towards that of a
@@ -47,15 +59,16 @@ void regular_targets(std::span<const Index> face, const std::vector<Vec3>& posit
   if (!(x.norm() > 0)) x = normal.unitOrthogonal();
   x.normalize();
   const Vec3 y = normal.cross(x);
-  const float half_step = std::numbers::pi_v<float> / static_cast<float>(n);
-  const std::complex<float> step = std::polar(1.0f, 2 * half_step);
+  static const std::array known{RegularPolygon::of(3), RegularPolygon::of(4),
+                                RegularPolygon::of(5)};
+  const auto [step, unit_side] = n <= 5 ? known[n - 3] : RegularPolygon::of(n);
   std::complex<float> coefficient = 0, turn = 1;
   for (std::size_t k = 0; k < n; ++k, turn *= std::conj(step)) {
     const Vec3 d = positions[face[k]] - center;
     coefficient += std::complex<float>(d.dot(x), d.dot(y)) * turn;
   }
   coefficient /= static_cast<float>(n);
-  const float radius = side / (2 * std::sin(half_step));
+  const float radius = side / unit_side;
   if (const float size = std::abs(coefficient); size > 0) {
     coefficient *= 1 - evenness + evenness * radius / size;
   }
