@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "extract/collect_faces.h"
+#include "extract/extraction_map.h"
+#include "extract/face_repair.h"
 #include "made_fields.h"
 #include "made_points.h"
 #include "mesh/border.h"
@@ -278,6 +281,43 @@ TEST(MakeManifold, SplitsAVertexBetweenFans) {
   EXPECT_EQ(s.non_manifold_vertices, 0u);
   EXPECT_EQ(s.components, 2u);
   EXPECT_EQ(e.nodes.size(), 6u);
+}
+
+/// A trapezohedron: two poles with eight quads each, and between them only vertices with three.
+TEST(Extract, VerticesWithFarTooManyEdgesAreCutInTwo) {
+  constexpr Index n = 8;
+  Extraction shape;
+  const auto ring = [](Index k, int row) {
+    const double angle = pi * (2 * (k % n) + row) / n;
+    return Vec3(static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)),
+                row == 0 ? 0.2f : -0.2f);
+  };
+  for (const int row : {0, 1}) {
+    for (Index k = 0; k < n; ++k) shape.mesh.positions.push_back(ring(k, row));
+  }
+  shape.mesh.positions.insert(shape.mesh.positions.end(), {Vec3(0, 0, 1), Vec3(0, 0, -1)});
+  for (const Vec3& p : shape.mesh.positions) shape.mesh.normals.push_back(p.normalized());
+  shape.nodes.assign(2 * n + 2, 0);
+  const Index north = 2 * n, south = north + 1;
+  for (Index k = 0; k < n; ++k) {
+    const Index next = (k + 1) % n;
+    shape.mesh.faces.push_back(std::array<Index, 4>{north, k, n + k, next});
+    shape.mesh.faces.push_back(std::array<Index, 4>{south, n + next, next, n + k});
+  }
+  const Context context(1);
+  ExtractionMap parts(shape, context);
+  FaceRepair repair(parts.map, parts.clusters, 4, std::move(parts.holes), std::move(parts.lines));
+  repair.open_vertices();
+  std::vector<Index> vertex;
+  const Mesh result = collect_faces(parts.map, repair, parts.clusters, vertex).mesh;
+  const MeshStatistics after = mesh_statistics(result);
+  EXPECT_EQ(after.faces, std::size_t{2 * n + 2});
+  EXPECT_EQ(after.euler, 2);
+  // Of 18: each pole is one with six and a regular one, and two of the others are regular.
+  EXPECT_EQ(after.irregular_vertices, 14u);
+  std::vector<int> valence(result.positions.size(), 0);
+  for (const Index v : result.faces.corners()) ++valence[v];
+  EXPECT_EQ(*std::ranges::max_element(valence), 6);
 }
 
 }  // namespace

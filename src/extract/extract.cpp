@@ -69,6 +69,7 @@ void make_regular(FaceRepair& repair, int posy) {
   if (posy == 4) {
     repair.improve_edges();
     repair.close_quads();
+    repair.open_vertices();
     repair.improve_edges();
     repair.remove_doublets();
   } else {

@@ -58,6 +58,10 @@ class FaceRepair {
   /// Closes `count` of them, wherever it leaves the fewest. Returns how many it could.
   std::size_t close_quads(std::size_t count);
 
+  /// The opposite: cuts vertices with far too many edges in two, with a quad in between, as long as
+  /// that leaves fewer irregular vertices.
+  void open_vertices();
+
   // Triangles (triangle_repair.cpp).
 
   /// Turns the edge between two triangles as long as that leaves fewer irregular vertices.
@@ -104,6 +108,15 @@ class FaceRepair {
   /// By how much the number of irregular vertices falls if the origin of h and the corner opposite
   /// to it in their quad become one; nothing if they must not, or it is less than `least`.
   std::optional<int> closing_gain(Index h, int least) const;
+  /// A way to cut the vertex that h leaves in two: the edges from h clockwise up to another go to a
+  /// new vertex, and the two of the cut stay with both.
+  struct Opening {
+    int gain = 0;     // by how much the number of irregular vertices falls
+    int squares = 0;  // of what the vertices then have too many edges or too few
+    Index first = no_index, last = no_index;
+  };
+  Opening best_opening(Index vertex) const;
+  void open(const Opening& opening);
   /// The same for contracting h between triangles.
   std::optional<int> contraction_gain(Index h);
   void close_quad(Index h);

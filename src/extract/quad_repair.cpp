@@ -224,6 +224,75 @@ void FaceRepair::close_quads() {
   }
 }
 
+FaceRepair::Opening FaceRepair::best_opening(Index vertex) const {
+  Opening best;
+  constexpr std::size_t least = 7, most = 30;  // edges
+  const std::size_t n = map_.leaving(vertex) == no_index ? 0 : map_.valence(vertex);
+  if (n < least || n > most || clusters_.on_border[vertex]) return best;
+  if (clusters_.hold[vertex] == at_corner) return best;
+  std::vector<Index> leaving{map_.leaving(vertex)};
+  while (leaving.size() < n) leaving.push_back(map_.around(leaving.back()));
+  const auto too_many = [&](Index v, int change) {
+    return static_cast<int>(map_.valence(v)) + change - regular_valence(clusters_.on_border[v]);
+  };
+  const auto squared = [](int x) { return x * x; };
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t k = 1; k + 2 <= n; ++k) {  // edges that go; those of lines stay
+      if (line(leaving[(i + k - 1) % n]) != no_index) break;
+      if (k == 1) continue;
+      const Index ends[2] = {map_.target(leaving[i]), map_.target(leaving[(i + k) % n])};
+      const int parts[2] = {static_cast<int>(k) + 1 - 4, static_cast<int>(n - k) + 1 - 4};
+      Opening opening{1, 0, leaving[i], leaving[(i + k) % n]};
+      for (const int part : parts) {
+        opening.gain -= part != 0;
+        opening.squares += squared(part);
+      }
+      bool fixed = false;
+      for (const Index v : ends) {
+        fixed = fixed || clusters_.hold[v] == at_corner;
+        opening.gain += is_irregular(v, 0) - is_irregular(v, 1);
+        opening.squares += squared(too_many(v, 1)) - squared(too_many(v, 0));
+      }
+      if (fixed || opening.gain <= 0 || opening.gain < best.gain) continue;
+      if (opening.gain == best.gain && opening.squares >= best.squares) continue;
+      best = opening;
+    }
+  }
+  return best;
+}
+
+void FaceRepair::open(const Opening& opening) {
+  const auto& [gain, squares, first, last] = opening;
+  const Index kept = map_.origin(first);
+  clusters_.append_mean({&kept, 1});
+  const Index added = map_.split_vertex(first, last);
+  // The faces on both sides have become one: each gets its other edge of the two, and what is left
+  // between them is the quad.
+  add_edge(last, map_.next(first));
+  add_edge(first, map_.next(last));
+  for (const Index v : {kept, added}) {
+    if (clusters_.hold[v] != free_vertex) continue;
+    constexpr float apart = 0.25f;  // of the way to the other ends of its edges
+    Vec3 sum = Vec3::Zero();
+    const Index start = map_.leaving(v);
+    Index h = start;
+    do {
+      sum += clusters_.positions[map_.target(h)];
+      h = map_.around(h);
+    } while (h != start);
+    const Vec3 mean = sum / static_cast<float>(map_.valence(v));
+    clusters_.positions[v] += apart * (mean - clusters_.positions[v]);
+  }
+}
+
+void FaceRepair::open_vertices() {
+  for (Index v = 0; v < map_.vertices(); ++v) {  // new ones, too
+    for (Opening opening = best_opening(v); opening.first != no_index; opening = best_opening(v)) {
+      open(opening);
+    }
+  }
+}
+
 std::size_t FaceRepair::close_quads(std::size_t count) {
   return reduce(
       count, [&](Index h) { return closing_gain(h, std::numeric_limits<int>::min()); },
