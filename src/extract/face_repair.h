@@ -108,8 +108,8 @@ class FaceRepair {
   /// By how much the number of irregular vertices falls if the origin of h and the corner opposite
   /// to it in their quad become one; nothing if they must not, or it is less than `least`.
   std::optional<int> closing_gain(Index h, int least) const;
-  /// A way to cut the vertex that h leaves in two: the edges from h clockwise up to another go to a
-  /// new vertex, and the two of the cut stay with both.
+  /// A way to cut a vertex in two: its edges from `first` clockwise up to `last` go to a new
+  /// vertex, and the other ends of these two get an edge to both.
   struct Opening {
     int gain = 0;     // by how much the number of irregular vertices falls
     int squares = 0;  // of what the vertices then have too many edges or too few

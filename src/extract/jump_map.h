@@ -38,12 +38,7 @@ struct JumpMap {
 
   template <typename Body>
   void for_each_leaving(Index v, const Body& body) const {
-    const Index start = map.leaving(v);
-    Index h = start;
-    do {
-      body(h);
-      h = map.around(h);
-    } while (h != start);
+    map.for_each_leaving(v, body);
   }
 
   bool on_feature(Index h) const { return lines[h / 2] != no_index; }

@@ -241,6 +241,7 @@ class LatticeRepair {
     bool any = false;
     for (Index v = 0; v < map_.vertices(); ++v) {
       if (map_.leaving(v) == no_index || lattice_.hold[v] != on_line) continue;
+      if (lattice_.clusters.on_border[v]) continue;  // ragged ones do go to and fro
       const Index h = folded_edge(v);
       if (h == no_index || !lattice_.may_collapse(PolygonMap::twin(h))) continue;
       const Index kept = map_.target(h);

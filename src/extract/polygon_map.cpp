@@ -141,14 +141,9 @@ PolygonMap::PolygonMap(const Mesh& mesh, std::vector<Index>& sources, std::vecto
 }
 
 std::size_t PolygonMap::valence(Index vertex) const {
-  const Index start = leaving_[vertex];
-  if (start == no_index) return 0;
+  if (leaving(vertex) == no_index) return 0;
   std::size_t count = 0;
-  Index h = start;
-  do {
-    ++count;
-    h = around(h);
-  } while (h != start);
+  for_each_leaving(vertex, [&](Index) { ++count; });
   return count;
 }
 

@@ -39,6 +39,16 @@ class PolygonMap {
   Index around(Index h) const { return next_[twin(h)]; }
   /// Some halfedge that leaves the vertex, or no_index.
   Index leaving(Index vertex) const { return leaving_[vertex]; }
+  /// Calls `body` for each halfedge that leaves the vertex, clockwise; there must be one.
+  template <typename Body>
+  void for_each_leaving(Index vertex, const Body& body) const {
+    const Index start = leaving(vertex);
+    Index h = start;
+    do {
+      body(h);
+      h = around(h);
+    } while (h != start);
+  }
   std::size_t valence(Index vertex) const;
   bool adjacent(Index a, Index b) const;
 

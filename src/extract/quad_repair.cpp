@@ -226,32 +226,33 @@ void FaceRepair::close_quads() {
 
 FaceRepair::Opening FaceRepair::best_opening(Index vertex) const {
   Opening best;
-  constexpr std::size_t least = 7, most = 30;  // edges
-  const std::size_t n = map_.leaving(vertex) == no_index ? 0 : map_.valence(vertex);
+  // All pairs of edges are tried, which would take long at a pole of thousands.
+  constexpr std::size_t least = 7, most = 30;
+  const std::size_t n = map_.valence(vertex);
   if (n < least || n > most || clusters_.on_border[vertex]) return best;
   if (clusters_.hold[vertex] == at_corner) return best;
-  std::vector<Index> leaving{map_.leaving(vertex)};
-  while (leaving.size() < n) leaving.push_back(map_.around(leaving.back()));
-  const auto too_many = [&](Index v, int change) {
-    return static_cast<int>(map_.valence(v)) + change - regular_valence(clusters_.on_border[v]);
+  std::vector<Index> leaving;
+  map_.for_each_leaving(vertex, [&](Index h) { leaving.push_back(h); });
+  const auto excess = [&](Index v) {
+    return static_cast<int>(map_.valence(v)) - regular_valence(clusters_.on_border[v]);
   };
-  const auto squared = [](int x) { return x * x; };
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t k = 1; k + 2 <= n; ++k) {  // edges that go; those of lines stay
       if (line(leaving[(i + k - 1) % n]) != no_index) break;
       if (k == 1) continue;
-      const Index ends[2] = {map_.target(leaving[i]), map_.target(leaving[(i + k) % n])};
-      const int parts[2] = {static_cast<int>(k) + 1 - 4, static_cast<int>(n - k) + 1 - 4};
       Opening opening{1, 0, leaving[i], leaving[(i + k) % n]};
-      for (const int part : parts) {
-        opening.gain -= part != 0;
-        opening.squares += squared(part);
+      const auto change = [&](int before, int after) {
+        opening.gain += (before != 0) - (after != 0);
+        opening.squares += after * after - before * before;
+      };
+      for (const std::size_t edges : {k + 1, n - k + 1}) {
+        change(0, static_cast<int>(edges) - regular_valence(false));
       }
       bool fixed = false;
-      for (const Index v : ends) {
+      for (const Index h : {opening.first, opening.last}) {
+        const Index v = map_.target(h);
         fixed = fixed || clusters_.hold[v] == at_corner;
-        opening.gain += is_irregular(v, 0) - is_irregular(v, 1);
-        opening.squares += squared(too_many(v, 1)) - squared(too_many(v, 0));
+        change(excess(v), excess(v) + 1);
       }
       if (fixed || opening.gain <= 0 || opening.gain < best.gain) continue;
       if (opening.gain == best.gain && opening.squares >= best.squares) continue;
@@ -264,22 +265,17 @@ FaceRepair::Opening FaceRepair::best_opening(Index vertex) const {
 void FaceRepair::open(const Opening& opening) {
   const auto& [gain, squares, first, last] = opening;
   const Index kept = map_.origin(first);
-  clusters_.append_mean({&kept, 1});
-  const Index added = map_.split_vertex(first, last);
+  cut(first, last);
+  clusters_.hold.back() = free_vertex;
   // The faces on both sides have become one: each gets its other edge of the two, and what is left
   // between them is the quad.
   add_edge(last, map_.next(first));
   add_edge(first, map_.next(last));
-  for (const Index v : {kept, added}) {
+  for (const Index v : {kept, map_.origin(first)}) {
     if (clusters_.hold[v] != free_vertex) continue;
     constexpr float apart = 0.25f;  // of the way to the other ends of its edges
     Vec3 sum = Vec3::Zero();
-    const Index start = map_.leaving(v);
-    Index h = start;
-    do {
-      sum += clusters_.positions[map_.target(h)];
-      h = map_.around(h);
-    } while (h != start);
+    map_.for_each_leaving(v, [&](Index h) { sum += clusters_.positions[map_.target(h)]; });
     const Vec3 mean = sum / static_cast<float>(map_.valence(v));
     clusters_.positions[v] += apart * (mean - clusters_.positions[v]);
   }

@@ -33,14 +33,11 @@ int FaceRepair::flip_gain(Index h) const {
   int gain = 0;
   const auto add = [&](Index v, int change) {
     int excess = 0;
-    Index g = map_.leaving(v);
-    const Index start = g;
     bool inner = true;
-    do {
+    map_.for_each_leaving(v, [&](Index g) {
       ++excess;
       inner = inner && !hole_[g];
-      g = map_.around(g);
-    } while (g != start);
+    });
     excess -= inner ? 6 : 4;
     gain += excess * excess - (excess + change) * (excess + change);
   };

@@ -9,7 +9,9 @@
 namespace meshgrain {
 namespace {
 
-constexpr double tolerated = 0.06;  // distance of a line from its edges, in their lengths
+// Distance of a line from its edges, in their lengths: on a circle, edges of half its radius leave
+// it by that.
+constexpr double tolerated = 0.06;
 
 }  // namespace
 
@@ -27,7 +29,7 @@ Chords::Chords(const Mesh& mesh, std::span<const LineEdge> edges, const Rails& r
   for (const auto& [a, b, line] : edges) {
     edge_ += (mesh.positions[a] - mesh.positions[b]).norm() / static_cast<double>(edges.size());
     for (const auto& [v, w] : {std::pair(a, b), std::pair(b, a)}) {
-      if (!slides(v)) continue;
+      if (!rails_.slides(v)) continue;
       beside_[v][beside_[v][0] != no_index] = w;
       line_[v] = line;
     }
@@ -40,7 +42,7 @@ std::optional<double> Chords::way(Index v, Index line, double near) const {
     if (!lines().is_closed(line)) return way;
     return near + std::remainder(way - near, length(line));
   };
-  if (slides(v)) {
+  if (rails_.slides(v)) {
     const Index segment = rails_.place(v);
     return nearest(ways_[segment] + (p - lines().positions[segment]).norm());
   }
@@ -90,7 +92,7 @@ double Chords::cut_off(Index line, const Stop& from, const Stop& to) const {
 double Chords::cut_off(Index v) const {
   constexpr double of_fold = 1;  // what is left uncovered where both edges go the same way
   const Index line = line_[v];
-  if (line == no_index || !slides(v)) return 0;
+  if (line == no_index || !rails_.slides(v)) return 0;
   const double here = *way(v, line, 0);
   const Stop at = stop_at(line, here);
   double sum = 0;

@@ -26,12 +26,10 @@ class Chords {
 
   const FeatureLines& lines() const { return rails_.lines(); }
 
-  /// Of a vertex that slides along a line, and no_index of all others.
+  /// Of a vertex that slid along a line at first, and no_index of all others.
   Index line(Index v) const { return line_[v]; }
   /// The vertices before and after a sliding one, in no order; no_index where there is none.
   const std::array<Index, 2>& beside(Index v) const { return beside_[v]; }
-
-  bool slides(Index v) const { return !rails_.is_free(v) && !rails_.is_fixed(v); }
 
   double length(Index line) const { return ways_[lines().end(line) - 1]; }
 

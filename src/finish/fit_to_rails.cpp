@@ -54,7 +54,7 @@ void Fit::run() {
     for (const Index w : chain.vertices) seen_[w] = 1;
     if (!find_stops(chain) || is_good(chain)) continue;
     const Index first = chain.vertices.front();
-    if (first == chain.vertices.back() && chords_.slides(first)) begin_at_best(chain);
+    if (first == chain.vertices.back() && rails_.slides(first)) begin_at_best(chain);
     fit(chain);
   }
 }

@@ -101,7 +101,7 @@ Vec3 Rails::project(const Vec3& p, std::size_t v) {
 }
 
 bool Rails::release(std::size_t v, Index& node) {
-  if (is_free(v) || is_fixed(v)) return false;
+  if (!slides(v)) return false;
   node = lines_.vertices[segment_[v]];
   segment_[v] = no_index;
   return true;

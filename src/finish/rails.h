@@ -17,6 +17,8 @@ class Rails {
 
   bool is_fixed(std::size_t v) const { return segment_[v] == stays; }
   bool is_free(std::size_t v) const { return segment_[v] == no_index; }
+  /// Along a line.
+  bool slides(std::size_t v) const { return !is_fixed(v) && !is_free(v); }
 
   /// The place on its line nearest to `p` that a vertex has; it remembers where that is.
   Vec3 project(const Vec3& p, std::size_t v);

@@ -27,6 +27,10 @@ bool repeats_a_vertex(std::span<const Index> face, std::vector<Index>& scratch) 
   return std::adjacent_find(scratch.begin(), scratch.end()) != scratch.end();
 }
 
+std::size_t lowest_corner(std::span<const Index> face) {
+  return static_cast<std::size_t>(std::ranges::min_element(face) - face.begin());
+}
+
 /// What all rotations of a face have in common, in both directions: the lowest corner, the two
 /// beside it, and their number. Of triangles that is all.
 struct FaceKey {
@@ -36,7 +40,7 @@ struct FaceKey {
 
   static FaceKey of(std::span<const Index> face, Index number) {
     const std::size_t n = face.size();
-    const auto low = static_cast<std::size_t>(std::ranges::min_element(face) - face.begin());
+    const std::size_t low = lowest_corner(face);
     const auto [beside, other] = std::minmax(face[(low + 1) % n], face[(low + n - 1) % n]);
     return {face[low], beside, other, static_cast<std::uint32_t>(n), number};
   }
@@ -46,7 +50,7 @@ struct FaceKey {
 /// The corners of a face from the lowest on, towards the lower of its two neighbours.
 std::vector<Index> canonical(std::span<const Index> face) {
   const std::size_t n = face.size();
-  const auto low = static_cast<std::size_t>(std::ranges::min_element(face) - face.begin());
+  const std::size_t low = lowest_corner(face);
   const std::size_t step = face[(low + 1) % n] < face[(low + n - 1) % n] ? 1 : n - 1;
   std::vector<Index> result(n);
   for (std::size_t i = 0, at = low; i < n; ++i, at = (at + step) % n) result[i] = face[at];

@@ -296,7 +296,7 @@ bool Pipeline::take_strips() {
       // Single quads for the rest, if these are fewer than the larger ones from before the split.
       const std::size_t rest = least - gone;
       if (rest > target_.faces_to_close(extraction_.mesh, one_percent)) return false;
-      if (reduce_faces(quads, 4, rest, context_) < rest) return false;
+      if (reduce_faces(quads, posy_of(options_.faces), rest, context_) < rest) return false;
     }
     extraction_ = std::move(quads);
     is_split_ = true;

@@ -52,8 +52,9 @@ class Pipeline {
   RemeshResult result() &&;
 
  private:
-  /// Takes strips of quads away until there are no more faces than wanted. Returns whether that can
-  /// be: what is left is split then.
+  /// Takes strips of quads away, and single ones for the rest, until there are no more faces than
+  /// wanted. Returns whether that is better than fewer of the larger quads: what is left is split
+  /// then.
   bool take_strips();
   void drop_pieces();
 
