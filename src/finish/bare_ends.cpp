@@ -1,10 +1,13 @@
 #include "finish/bare_ends.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "graph/spread.h"
+#include "util/collect.h"
 #include "util/triangle.h"
 
 namespace meshgrain {
@@ -17,29 +20,90 @@ struct Ways {
   std::vector<Index> before;  // the node before on the way from there, or no_index
 };
 
-Ways ways_from_vertices(const Extraction& extraction, const Graph& graph, const Context& context) {
+/// The vertex of the mesh to which none of its neighbours is nearer, on the way from `vertex`.
+Index walk_to_nearest(const Vec3& p, const Mesh& mesh, const VertexFaces& around, Index vertex) {
+  float best = (p - mesh.positions[vertex]).squaredNorm();
+  for (Index from = no_index; from != vertex;) {
+    from = vertex;
+    for (const Index f : around[from]) {
+      for (const Index v : mesh.faces[f]) {
+        const float distance = (p - mesh.positions[v]).squaredNorm();
+        if (distance >= best) continue;
+        best = distance;
+        vertex = v;
+      }
+    }
+  }
+  return vertex;
+}
+
+/// Straight ways of the nodes that have a vertex within reach on their side of the surface. It is
+/// looked for from the vertices with the nodes just before and after: near in a space-filling
+/// order, near in space.
+Ways straight_ways(const Extraction& extraction, const VertexFaces& around, const Graph& graph,
+                   const EdgeLength& reach, const Context& context) {
   const std::size_t n = graph.size();
   Ways ways{std::vector<float>(n, std::numeric_limits<float>::infinity()),
             std::vector<Index>(n, no_index), std::vector<Index>(n, no_index)};
-  std::vector<std::pair<float, Index>> sources;
-  const auto reach = [&](Index node, float length, Index vertex, Index before) {
-    if (length >= ways.length[node]) return false;
-    ways.length[node] = length;
-    ways.vertex[node] = vertex;
-    ways.before[node] = before;
+  struct Place {
+    Index node, vertex;
+    bool operator<(const Place& o) const {
+      return std::tie(node, vertex) < std::tie(o.node, o.vertex);
+    }
+  };
+  std::vector<Place> places;
+  for (Index v = 0; v < extraction.nodes.size(); ++v) places.push_back({extraction.nodes[v], v});
+  std::sort(places.begin(), places.end());
+  if (places.empty()) return ways;
+  constexpr std::size_t grain = 4096;
+  context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
+    auto after =
+        std::lower_bound(places.begin(), places.end(), Place{static_cast<Index>(begin), 0});
+    for (auto i = static_cast<Index>(begin); i < end; ++i) {
+      while (after != places.end() && after->node < i) ++after;
+      const Vec3& p = graph.positions[i];
+      const auto reached_from = [&](Index start) {
+        const Index v = walk_to_nearest(p, extraction.mesh, around, start);
+        const float length = (p - extraction.mesh.positions[v]).norm();
+        if (length > reach[i]) return false;
+        if (graph.normals[i].dot(graph.normals[extraction.nodes[v]]) <= 0) return false;
+        ways.length[i] = length;
+        ways.vertex[i] = v;
+        return true;
+      };
+      if (i > begin && ways.vertex[i - 1] != no_index && reached_from(ways.vertex[i - 1])) continue;
+      if (after != places.end() && reached_from(after->vertex)) continue;
+      if (after != places.begin()) reached_from(std::prev(after)->vertex);
+    }
+  });
+  return ways;
+}
+
+/// Goes on over the graph to the nodes that no vertex reaches.
+void go_on(Ways& ways, const Graph& graph, const Context& context) {
+  using Source = std::pair<float, Index>;
+  const auto sources = collect<Source>(
+      graph.size(),
+      [&](std::size_t begin, std::size_t end, std::vector<Source>& found) {
+        for (auto i = static_cast<Index>(begin); i < end; ++i) {
+          if (ways.vertex[i] == no_index) continue;
+          const auto around = graph.neighbors_of(i);
+          if (std::any_of(around.begin(), around.end(),
+                          [&](Index j) { return ways.vertex[j] == no_index; })) {
+            found.push_back({ways.length[i], i});
+          }
+        }
+      },
+      context);
+  const auto lower = [&](Index i, Index j) {
+    const float farther = ways.length[i] + (graph.positions[j] - graph.positions[i]).norm();
+    if (farther >= ways.length[j]) return false;
+    ways.length[j] = farther;
+    ways.vertex[j] = ways.vertex[i];
+    ways.before[j] = i;
     return true;
   };
-  for (Index v = 0; v < extraction.nodes.size(); ++v) {
-    const Index node = extraction.nodes[v];
-    const float length = (extraction.mesh.positions[v] - graph.positions[node]).norm();
-    if (reach(node, length, v, no_index)) sources.push_back({length, node});
-  }
-  const auto go_on = [&](Index i, Index j) {
-    const float farther = ways.length[i] + (graph.positions[j] - graph.positions[i]).norm();
-    return reach(j, farther, ways.vertex[i], i);
-  };
-  spread(graph, ways.length, sources, 1, go_on, context);
-  return ways;
+  spread(graph, ways.length, sources, 1, lower, context);
 }
 
 /// The distance from a point to the faces around a vertex and its neighbours.
@@ -65,7 +129,8 @@ float distance_to_star(const Vec3& p, const Mesh& mesh, const VertexFaces& aroun
 std::vector<Reach> find_bare_ends(const Extraction& extraction, const VertexFaces& around,
                                   const Graph& graph, const EdgeLength& reach,
                                   const Context& context) {
-  const Ways ways = ways_from_vertices(extraction, graph, context);
+  Ways ways = straight_ways(extraction, around, graph, reach, context);
+  go_on(ways, graph, context);
   struct Tip {
     float distance;
     Index node;

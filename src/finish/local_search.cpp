@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -43,6 +44,7 @@ LocalSearch::LocalSearch(Extraction& extraction, const VertexFaces& around, Plac
       quality_(mesh_.faces.size()),
       normals_(mesh_.positions.size()),
       is_rival_(mesh_.faces.size(), 0),
+      batch_(mesh_.positions.size(), no_index),
       tried_(mesh_.positions.size(), 0),
       moved_(mesh_.positions.size(), 0) {
   for (Index f = 0; f < mesh_.faces.size(); ++f) {
@@ -54,21 +56,51 @@ LocalSearch::LocalSearch(Extraction& extraction, const VertexFaces& around, Plac
 }
 
 bool LocalSearch::improve(std::span<const Index> vertices, int sweeps, const Context& context) {
+  constexpr std::size_t grain = 8;
+  const auto apart = batches(vertices);
   bool any = false;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     context.check();
-    bool moved = false;
-    for (const Index v : vertices) {
-      if (!has_news(v)) continue;
-      tried_[v] = ++now_;
-      if (!improve(v)) continue;
-      touch(v);
-      moved = true;
+    std::atomic<bool> moved = false;
+    for (const std::vector<Index>& batch : apart) {
+      ++now_;
+      context.for_ranges(batch.size(), grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+          const Index v = batch[k];
+          if (!has_news(v)) continue;
+          tried_[v] = now_;
+          if (!improve(v)) continue;
+          moved_[v] = now_ + 1;
+          moved = true;
+        }
+      });
+      ++now_;
     }
     if (!moved) break;
     any = true;
   }
   return any;
+}
+
+/// Vertices that share no face with each other can be tried at once: each goes into the first batch
+/// where it shares none.
+std::vector<std::vector<Index>> LocalSearch::batches(std::span<const Index> vertices) {
+  std::vector<std::vector<Index>> result;
+  std::vector<std::uint8_t> taken;
+  for (const Index v : vertices) {
+    taken.assign(result.size() + 1, 0);
+    for (const Index f : around_[v]) {
+      for (const Index w : std::as_const(mesh_.faces)[f]) {
+        if (batch_[w] != no_index) taken[batch_[w]] = 1;
+      }
+    }
+    const auto first = std::find(taken.begin(), taken.end(), 0) - taken.begin();
+    batch_[v] = static_cast<Index>(first);
+    if (batch_[v] == result.size()) result.emplace_back();
+    result[batch_[v]].push_back(v);
+  }
+  for (const Index v : vertices) batch_[v] = no_index;
+  return result;
 }
 
 void LocalSearch::keep_apart(std::vector<Index> faces) {
@@ -128,7 +160,7 @@ float LocalSearch::quality_among_neighbors(Index f) const {
 
 /// What the faces around a vertex lack, the worst counting most, and how uneven they are. From
 /// `limit` on it need not be exact.
-double LocalSearch::lack(Index v, double limit) const {
+double LocalSearch::lack(Index v, std::span<const Rival> near, double limit) const {
   constexpr double good = 0.75;
   constexpr double against_cutting_off = 100;  // before the shapes of faces
   double sum = against_cutting_off * placement_.cut_off(v);
@@ -142,17 +174,17 @@ double LocalSearch::lack(Index v, double limit) const {
     sum += 0.1 * uneven * uneven;
   }
   for (const Index f : around_[v]) {
-    if (sum < limit) sum += crossing(f, limit - sum);
+    if (sum < limit) sum += crossing(f, near, limit - sum);
   }
   return sum;
 }
 
 /// From `limit` on it need not be exact.
-double LocalSearch::crossing(Index f, double limit) const {
+double LocalSearch::crossing(Index f, std::span<const Rival> near, double limit) const {
   if (!is_rival_[f]) return 0;
   const Eigen::AlignedBox3f box = face_box(mesh_, f);
   double sum = 0;
-  for (const auto& [g, near_box] : near_) {
+  for (const auto& [g, near_box] : near) {
     if (near_box && !box.intersects(*near_box)) continue;
     const double deep = penetration(mesh_, f, g);
     if (deep > 0) sum += 1 + 20 * deep / std::sqrt(mean_area_);
@@ -161,9 +193,9 @@ double LocalSearch::crossing(Index f, double limit) const {
   return sum;
 }
 
-void LocalSearch::find_near(Index v, float distance) {
-  near_.clear();
-  if (rivals_.empty()) return;
+std::vector<LocalSearch::Rival> LocalSearch::rivals_near(Index v, float distance) const {
+  std::vector<Rival> near;
+  if (rivals_.empty()) return near;
   Eigen::AlignedBox3f box;
   for (const Index f : around_[v]) box.extend(face_box(mesh_, f));
   const Eigen::AlignedBox3f wide(box.min().array() - distance, box.max().array() + distance);
@@ -171,8 +203,9 @@ void LocalSearch::find_near(Index v, float distance) {
     const Eigen::AlignedBox3f near_box = face_box(mesh_, g);
     if (!wide.intersects(near_box)) continue;
     const bool moves = std::ranges::binary_search(around_[v], g);
-    near_.push_back({g, moves ? std::nullopt : std::optional(near_box)});
+    near.push_back({g, moves ? std::nullopt : std::optional(near_box)});
   }
+  return near;
 }
 
 bool LocalSearch::improve(Index v) {
@@ -186,8 +219,8 @@ bool LocalSearch::improve(Index v) {
                 static_cast<float>(face.size() * around_[v].size());
     }
   }
-  find_near(v, length);
-  const double before = lack(v, std::numeric_limits<double>::infinity());
+  const std::vector<Rival> near = rivals_near(v, length);
+  const double before = lack(v, near, std::numeric_limits<double>::infinity());
   if (before < 1e-6) return false;
   Vec3 best = mesh_.positions[v];
   Placement::Seed best_seed = placement_.seed(v);
@@ -195,7 +228,7 @@ bool LocalSearch::improve(Index v) {
   const auto attempt = [&](const Vec3& target) {
     placement_.set_seed(v, best_seed);
     mesh_.positions[v] = placement_.place(target, v);
-    const double now = lack(v, least);
+    const double now = lack(v, near, least);
     if (now < least) {
       least = now;
       best = mesh_.positions[v];

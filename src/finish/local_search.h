@@ -28,7 +28,8 @@ class LocalSearch {
   /// The same with the normals of the faces around its corners in place of the surface's.
   float quality_among_neighbors(Index f) const;
 
-  /// Tries each of the vertices, and again while any of them moves. Returns whether one did.
+  /// Tries each of the vertices (none of them twice), and again while any of them moves. Returns
+  /// whether one did.
   bool improve(std::span<const Index> vertices, int sweeps, const Context& context);
 
   /// Faces that, from now on, are also bad where they pass through each other.
@@ -54,13 +55,14 @@ class LocalSearch {
     std::optional<Eigen::AlignedBox3f> box;  // none if it moves with the vertex being tried
   };
 
+  std::vector<std::vector<Index>> batches(std::span<const Index> vertices);
   bool has_news(Index v) const;
   bool improve(Index v);
   float quality_here(Index f) const;
-  double lack(Index v, double limit) const;
+  double lack(Index v, std::span<const Rival> near, double limit) const;
   /// The rivals that the faces around v may meet when it moves by up to a distance.
-  void find_near(Index v, float distance);
-  double crossing(Index f, double limit) const;
+  std::vector<Rival> rivals_near(Index v, float distance) const;
+  double crossing(Index f, std::span<const Rival> near, double limit) const;
 
   Mesh& mesh_;
   const VertexFaces& around_;
@@ -70,8 +72,8 @@ class LocalSearch {
   float mean_area_ = 0;
   std::vector<Index> rivals_;                 // see keep_apart()
   std::vector<std::uint8_t> is_rival_;        // of each face
-  std::vector<Rival> near_;                   // see find_near(), of the vertex being tried
-  std::uint32_t now_ = 0;                     // counts tries and moves
+  std::vector<Index> batch_;                  // of each vertex, while batches() runs
+  std::uint32_t now_ = 0;                     // counts batches and moves
   std::vector<std::uint32_t> tried_, moved_;  // when each vertex last was
 };
 

@@ -19,6 +19,11 @@ class Placement {
   /// so that calls for the same vertex must not run at once.
   Vec3 place(const Vec3& p, std::size_t v);
 
+  /// A plane near which v, if it is free, may take small steps from about `p`.
+  Projector::Plane touch(const Vec3& p, std::size_t v) {
+    return projector_.touch(p, extraction_.nodes[v]);
+  }
+
   bool is_fixed(std::size_t v) const { return rails_.is_fixed(v); }
   bool is_tethered(std::size_t v) const { return tether_[v] != no_index; }
   /// Whether it may go anywhere on the surface.

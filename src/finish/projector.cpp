@@ -98,19 +98,31 @@ Vec3 Projector::project(const Vec3& p, Index& seed) const {
   return best;
 }
 
-Vec3 Projector::project_on_cloud(const Vec3& p, Index& seed) const {
+Projector::Plane Projector::touch(const Vec3& p, Index& seed) const {
+  if (surface_.is_point_cloud() || graph_.size() != surface_.positions.size()) {
+    const Vec3 point = project(p, seed);
+    return {point, normal(seed)};
+  }
+  walk_to_nearest(p, seed);
+  return {graph_.positions[seed], graph_.normals[seed]};
+}
+
+void Projector::walk_to_nearest(const Vec3& p, Index& seed) const {
   float best = (graph_.positions[seed] - p).squaredNorm();
-  for (bool moved = true; moved;) {
-    moved = false;
-    for (const Index j : graph_.neighbors_of(seed)) {
+  for (Index from = no_index; from != seed;) {
+    from = seed;
+    for (const Index j : graph_.neighbors_of(from)) {
       const float distance = (graph_.positions[j] - p).squaredNorm();
       if (distance < best) {
         best = distance;
         seed = j;
-        moved = true;
       }
     }
   }
+}
+
+Vec3 Projector::project_on_cloud(const Vec3& p, Index& seed) const {
+  walk_to_nearest(p, seed);
   // The tangent planes around, nearer ones counting more: smoother than the points themselves.
   float scale = 1e-30f;
   for (const Index j : graph_.neighbors_of(seed)) {

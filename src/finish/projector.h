@@ -21,6 +21,17 @@ class Projector {
   /// and becomes the one where the walk ended.
   Vec3 project(const Vec3& p, Index& seed) const;
 
+  /// A plane that touches the surface.
+  struct Plane {
+    Vec3 point = Vec3::Zero(), normal = Vec3::Zero();
+
+    Vec3 project(const Vec3& p) const { return p - normal * normal.dot(p - point); }
+  };
+
+  /// The plane that touches the surface about where `p` is nearest to it, with a `seed` as for
+  /// project(): at the nearest vertex, which is found far sooner than the nearest point.
+  Plane touch(const Vec3& p, Index& seed) const;
+
   /// The normal of the surface at a vertex.
   Vec3 normal(Index vertex) const;
 
@@ -30,6 +41,8 @@ class Projector {
                               std::size_t most) const;
 
  private:
+  /// Goes on to the nearest of the neighbours in the graph, while that is nearer to p.
+  void walk_to_nearest(const Vec3& p, Index& seed) const;
   Vec3 nearest_around(const Vec3& p, Index vertex, Index& nearest_corner) const;
   Vec3 project_on_cloud(const Vec3& p, Index& seed) const;
 

@@ -132,6 +132,7 @@ class Smoother {
   const Context& context_;
   Placement placement_;
   VertexFaces around_;
+  std::vector<Index> corners_;  // beside around_.faces: which corner of the face the vertex is
   EdgeLength sizes_{1.0f};      // relative, of the vertices where they are
   std::vector<Vec3> previous_;  // positions, one iteration ago
   std::vector<Vec3> targets_;   // of every corner of a face
@@ -148,7 +149,16 @@ Smoother::Smoother(Extraction& extraction, const Mesh& surface, const Graph& gra
       options_(options),
       context_(context),
       placement_(extraction, surface, graph, features, context),
-      around_(vertex_faces(mesh_, context)) {
+      around_(vertex_faces(mesh_, context)),
+      corners_(around_.faces.size()) {
+  for_vertices([&](std::size_t v) {
+    for (Index k = around_.offsets[v]; k < around_.offsets[v + 1]; ++k) {
+      const auto face = std::as_const(mesh_.faces)[around_.faces[k]];
+      const auto corner = std::find(face.begin(), face.end(), v) - face.begin();
+      corners_[k] = static_cast<Index>(mesh_.faces.first(around_.faces[k]) +
+                                       static_cast<std::size_t>(corner));
+    }
+  });
   previous_.resize(mesh_.positions.size());
   for_vertices([&](std::size_t v) { previous_[v] = placement_.place(mesh_.positions[v], v); });
   mesh_.positions = previous_;
@@ -192,12 +202,7 @@ void Smoother::fit_polygons(float side) {
 
 Vec3 Smoother::mean_target(Index v) const {
   Vec3 sum = Vec3::Zero();
-  for (const Index f : around_[v]) {
-    const auto face = std::as_const(mesh_.faces)[f];
-    for (std::size_t k = 0; k < face.size(); ++k) {
-      if (face[k] == v) sum += targets_[mesh_.faces.first(f) + k];
-    }
-  }
+  for (Index k = around_.offsets[v]; k < around_.offsets[v + 1]; ++k) sum += targets_[corners_[k]];
   return sum / static_cast<float>(around_[v].size());
 }
 
@@ -205,40 +210,37 @@ void Smoother::iterate(int iterations) {
   // Each step goes on in part where the last one went (Polyak's heavy ball): faults that reach far
   // then fade in as many iterations as they are edges wide, rather than in the square of that.
   constexpr float momentum = 0.9f;
-  // Vertices move over the surface slowly: where it is smooth, most steps stay on the plane that
-  // touched it a few steps ago.
-  constexpr int on_plane = 3;
-  constexpr float smooth_enough = 0.1f;  // how far the surface may leave that plane, in edges
+  // Vertices move over the surface slowly: a plane that touches it near them serves for some steps.
+  constexpr int steps_on_plane = 4;
   const std::size_t count = mesh_.positions.size();
-  std::vector<Vec3> next(count), touched(count);
-  std::vector<std::uint8_t> is_smooth(count, 0);
+  std::vector<Vec3> next(count);
+  std::vector<Projector::Plane> planes(count);
   normals_.resize(count);
   for_vertices([&](std::size_t v) { normals_[v] = placement_.normal(v); });
-  for (int iteration = 1; iteration <= iterations; ++iteration) {
+  float side = 0;
+  for (int iteration = 0; iteration < iterations; ++iteration) {
     context_.progress("smoothing", static_cast<double>(iteration) / iterations);
-    const bool exact = iteration % (on_plane + 1) == 1 || iteration == iterations;
-    const float side = mean_side(mesh_, sizes_);
+    const bool look = iteration % steps_on_plane == 0, last = iteration + 1 == iterations;
+    if (look) {
+      look_up_sizes();
+      side = mean_side(mesh_, sizes_);
+    }
     fit_polygons(side);
     for_vertices([&](std::size_t v) {
       const Vec3& p = mesh_.positions[v];
       Vec3 q = p + momentum * (p - previous_[v]);
       if (!around_[v].empty()) q += mean_target(static_cast<Index>(v)) - p;
-      const Vec3 beside = q - normals_[v] * normals_[v].dot(q - touched[v]);
-      if (!exact && is_smooth[v]) {
-        next[v] = beside;
+      if (last || !placement_.is_free(v)) {
+        next[v] = placement_.place(q, v);
+        if (look) normals_[v] = placement_.normal(v);
         return;
       }
-      next[v] = placement_.place(q, v);
-      if (!exact) return;
-      is_smooth[v] = iteration > 1 && placement_.is_free(v) &&
-                     (next[v] - beside).norm() < smooth_enough * side * sizes_[v];
-      touched[v] = next[v];
+      if (look) {
+        planes[v] = placement_.touch(q, v);
+        normals_[v] = planes[v].normal;
+      }
+      next[v] = planes[v].project(q);
     });
-    // What touched there has the normal there, and the size.
-    if (exact) {
-      for_vertices([&](std::size_t v) { normals_[v] = placement_.normal(v); });
-      look_up_sizes();
-    }
     previous_.swap(mesh_.positions);
     mesh_.positions.swap(next);
   }
