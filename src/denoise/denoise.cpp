@@ -18,28 +18,34 @@ namespace {
 /// is out: the filter makes edges of some of what is smooth, too.
 constexpr double clearly = 2;
 
-/// Whether so many edges are no creases and yet not flat that it may be noise. `edges` are those
-/// that are not flat.
-bool may_be_noisy(const Mesh& triangles, const std::vector<SharpEdge>& edges) {
+/// Whether so many edges are not flat that it may be noise.
+bool may_be_noisy(const Mesh& triangles, const Context& context) {
   constexpr double least_share = 0.15;  // of the length of all edges
   double length = 0;
-  for (const auto& [ends, cosine] : edges) {
+  for (const auto& [ends, cosine] : sharp_edges(triangles, flat_degrees, context)) {
     length += (triangles.positions[ends[0]] - triangles.positions[ends[1]]).norm();
   }
   const auto sides = static_cast<double>(triangles.faces.corners().size());
   return length > least_share * edge_lengths(triangles).mean * sides / 2;
 }
 
-/// Some of the surface tells at once that most scans are no part.
-bool is_noisy_part(const Mesh& triangles, const Context& context) {
-  const std::vector<SharpEdge> edges = sharp_edges(triangles, flat_degrees, context);
-  if (!mechanical_creases(triangles, edges, 1).empty()) return false;  // creases without noise
-  if (!may_be_noisy(triangles, edges)) return false;
-  constexpr std::size_t patches = 16, faces_each = 1000;
-  Mesh sample = sample_patches(triangles, patches, faces_each, context);
+CreaseLengths lengths_without_noise(Mesh& sample, const Context& context) {
   NormalFilter(sample, NormalFilter::Border::moves, context).run();
+  return crease_lengths(sample, sharp_edges(sample, flat_degrees, context));
+}
+
+/// Some of the surface tells at once that most scans are no part, and less of it that most
+/// sculptures are none.
+bool is_noisy_part(const Mesh& triangles, const Context& context) {
+  Mesh sample = sample_patches(triangles, 16, 1000, context);
+  if (!may_be_noisy(sample, context)) return false;
   constexpr double margin = 0.75;
-  return !mechanical_creases(sample, margin * clearly, context).empty();
+  Mesh less = sample_patches(sample, 8, 250, context);
+  const CreaseLengths hint = lengths_without_noise(less, context);
+  if (hint.clear < margin * hint.doubtful) return false;
+  const CreaseLengths found = lengths_without_noise(sample, context);
+  if (found.clear <= margin * clearly * found.doubtful) return false;
+  return mechanical_creases(triangles, 1, context).empty();  // else there are creases without noise
 }
 
 }  // namespace

@@ -52,6 +52,7 @@ NormalFilter::NormalFilter(Mesh& triangles, Border border, const Context& contex
   patches_.resize(count);
   guides_.resize(count);
   normals_.resize(count);
+  offsets_.resize(count);
 }
 
 void NormalFilter::run() {
@@ -138,22 +139,25 @@ void NormalFilter::average(float reach, float spread) {
 }
 
 void NormalFilter::move_vertices() {
-  std::vector<Vec3> next(mesh_.positions.size());
-  context_.for_ranges(next.size(), grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      const Vec3& p = mesh_.positions[v];
-      Vec3 sum = Vec3::Zero();
-      for (const Index f : vertex_faces_[v]) {
-        const auto face = std::as_const(mesh_.faces)[f];
-        const Vec3 center =
-            (mesh_.positions[face[0]] + mesh_.positions[face[1]] + mesh_.positions[face[2]]) / 3;
-        sum += normals_[f] * normals_[f].dot(center - p);
-      }
-      const std::size_t count = std::max<std::size_t>(vertex_faces_[v].size(), 1);
-      next[v] = stays_[v] ? p : Vec3(p + sum / static_cast<float>(count));
+  // The plane that each face should lie in goes through its center.
+  context_.for_ranges(facets_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto face = std::as_const(mesh_.faces)[f];
+      const Vec3 sum =
+          mesh_.positions[face[0]] + mesh_.positions[face[1]] + mesh_.positions[face[2]];
+      offsets_[f] = normals_[f].dot(sum) / 3;
     }
   });
-  mesh_.positions.swap(next);
+  context_.for_ranges(mesh_.positions.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      if (stays_[v] || vertex_faces_[v].empty()) continue;
+      Vec3& p = mesh_.positions[v];
+      Vec3 sum = Vec3::Zero();
+      for (const Index f : vertex_faces_[v])
+        sum += normals_[f] * (offsets_[f] - normals_[f].dot(p));
+      p += sum / static_cast<float>(vertex_faces_[v].size());
+    }
+  });
 }
 
 }  // namespace meshgrain

@@ -51,6 +51,7 @@ class NormalFilter {
   std::vector<Facet> facets_;
   std::vector<Patch> patches_;
   std::vector<Vec3> guides_, normals_;
+  std::vector<float> offsets_;  // of the planes with these normals, from zero
 };
 
 }  // namespace meshgrain

@@ -6,28 +6,41 @@
 
 namespace meshgrain {
 
-std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh,
-                                                     const std::vector<SharpEdge>& edges,
-                                                     double clearly) {
-  constexpr double sharp = 40;  // degrees
-  const auto is_above = [](const SharpEdge& edge, double degrees) {
-    return edge.cosine < std::cos(degrees * std::numbers::pi / 180);
-  };
-  const auto length_above = [&](double degrees) {
-    double sum = 0;
-    for (const SharpEdge& edge : edges) {
-      const auto [a, b] = edge.ends;
-      if (is_above(edge, degrees)) sum += (mesh.positions[a] - mesh.positions[b]).norm();
-    }
-    return sum;
-  };
-  const double creases = length_above(sharp);
-  if (creases <= clearly * (length_above(flat_degrees) - creases)) return {};
+namespace {
+
+constexpr double sharp = 40;  // degrees
+
+bool is_above(const SharpEdge& edge, double degrees) {
+  return edge.cosine < std::cos(degrees * std::numbers::pi / 180);
+}
+
+double length_above(const Mesh& mesh, std::span<const SharpEdge> edges, double degrees) {
+  double sum = 0;
+  for (const SharpEdge& edge : edges) {
+    const auto [a, b] = edge.ends;
+    if (is_above(edge, degrees)) sum += (mesh.positions[a] - mesh.positions[b]).norm();
+  }
+  return sum;
+}
+
+}  // namespace
+
+CreaseLengths crease_lengths(const Mesh& mesh, std::span<const SharpEdge> edges) {
+  const double clear = length_above(mesh, edges, sharp);
+  return {clear, length_above(mesh, edges, flat_degrees) - clear};
+}
+
+std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh, double clearly,
+                                                     const Context& context) {
+  const std::vector<SharpEdge> edges = sharp_edges(mesh, flat_degrees, context);
+  const CreaseLengths lengths = crease_lengths(mesh, edges);
+  if (lengths.clear <= clearly * lengths.doubtful) return {};
   // The threshold is where it matters least.
   double threshold = sharp, least = std::numeric_limits<double>::infinity();
   constexpr double lowest = 20, window = 1.25, step = 2;
   for (double degrees = sharp; degrees >= lowest; degrees -= step) {
-    const double doubtful = length_above(degrees / window) - length_above(degrees * window);
+    const double doubtful =
+        length_above(mesh, edges, degrees / window) - length_above(mesh, edges, degrees * window);
     if (doubtful >= least) continue;
     least = doubtful;
     threshold = degrees;
@@ -37,11 +50,6 @@ std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh,
     if (is_above(edge, threshold)) result.push_back(edge.ends);
   }
   return result;
-}
-
-std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh, double clearly,
-                                                     const Context& context) {
-  return mechanical_creases(mesh, sharp_edges(mesh, flat_degrees, context), clearly);
 }
 
 }  // namespace meshgrain

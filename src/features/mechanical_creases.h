@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "mesh/border.h"
@@ -9,14 +10,19 @@
 
 namespace meshgrain {
 
-/// The creases of a mechanical part; nothing for a sculpture or a scan, whose sharp edges are
-/// detail or noise. Told by the length of edges of every sharpness: in a part they are either
-/// nearly flat or creases, of which there are `clearly` times as much as of all in between.
-/// `edges` are all that are sharper than `flat_degrees`.
+/// Below this edges are flat.
 inline constexpr double flat_degrees = 10;
-std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& triangles,
-                                                     const std::vector<SharpEdge>& edges,
-                                                     double clearly);
+
+/// How long the edges are that are sharp, and those that are neither sharp nor flat. `edges` are
+/// all that are not flat.
+struct CreaseLengths {
+  double clear, doubtful;
+};
+CreaseLengths crease_lengths(const Mesh& triangles, std::span<const SharpEdge> edges);
+
+/// The creases of a mechanical part; nothing for a sculpture or a scan, whose sharp edges are
+/// detail or noise. In a part edges are either nearly flat or creases, of which there are `clearly`
+/// times as much as of all in between.
 std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& triangles, double clearly,
                                                      const Context& context);
 
