@@ -155,13 +155,22 @@ void Pipeline::size_faces() {
   fit_lengths_to_borders(more_faces);
 }
 
+double Pipeline::surplus() const {
+  const bool harmless = lengths_.uniform() && options_.guides.empty() && options_.regularity < 1;
+  return harmless ? target_.surplus() : target_.tolerance();
+}
+
+double Pipeline::count_to_aim_at() const {
+  return 1 + (surplus() - target_.tolerance()) / 2;
+}
+
 double Pipeline::faces_to_ask_for() const {
   if (options_.edge_length > 0) return 1;
   // A lattice spans what bends within a few cells, as its faces will. How many was measured.
   const double cells = options_.faces == OutputFaces::quads           ? 2
                        : options_.faces == OutputFaces::quad_dominant ? 3
                                                                       : 4;
-  return 1 / flattened_share(hierarchy_, cells * mean_length_ * mean_length_);
+  return count_to_aim_at() / flattened_share(hierarchy_, cells * mean_length_ * mean_length_);
 }
 
 bool Pipeline::fit_lengths_to_borders(double more_faces) {
@@ -246,18 +255,19 @@ void Pipeline::position_and_extract() {
     Extraction found = stage_("extraction", [&] { return extract(positions); });
     const double ratio = target_.count_ratio(found.mesh);
     // A few faces too many can be taken away, but not added.
-    const bool met = std::abs(ratio - 1) < tolerance;
+    const double closing = attempt < 3 ? surplus() : std::max(surplus(), 0.03);
+    const bool met = std::abs(ratio - 1) < tolerance ||
+                     (ratio > 1 && ratio < 1 + closing && !given && take_faces_away(found));
     const double error = met ? 0 : ratio < 1 ? 1 / ratio - 1 : (ratio - 1) / 5;
     if (error < least_error) {
       least_error = error;
       extraction_ = std::move(found);
       fields().position = std::move(positions);
     }
-    const double closing = attempt < 3 ? tolerance : std::max(tolerance, 0.03);
-    if (given || (ratio > 1 - tolerance && ratio < 1 + closing)) break;
-    const double aim = attempt < 3 ? 1 : 1.01;
+    if (given || met) break;
     excess += std::log(ratio) - asked;
     const double mean_excess = excess / (attempt + 1);
+    const double aim = attempt < 3 ? count_to_aim_at() : 1.01;
     const double more = std::clamp(std::log(aim) - mean_excess - asked, -1.4, 1.4);
     asked += more;
     if (!borders_.empty()) {
@@ -268,11 +278,8 @@ void Pipeline::position_and_extract() {
     }
   }
   const double ratio = target_.count_ratio(extraction_.mesh);
-  if (has_room && ratio > 1 + tolerance && ratio < 1.35 && !take_strips()) {
-    stage_("extraction", [&] {
-      reduce_faces(extraction_, posy_of(options_.faces),
-                   target_.faces_to_close(extraction_.mesh, tolerance), context_);
-    });
+  if (has_room && !is_split_ && ratio > 1 + tolerance && ratio < 1.35) {
+    take_faces_away(extraction_);
   }
   if (extraction_.mesh.faces.empty()) {
     throw Error(
@@ -281,27 +288,33 @@ void Pipeline::position_and_extract() {
   result_.report.edge_length = fields().position.edge_length[0] * frame_.scale;
 }
 
-bool Pipeline::take_strips() {
-  if (options_.faces != OutputFaces::quads) return false;
+bool Pipeline::take_faces_away(Extraction& extraction) {
   return stage_("extraction", [&] {
-    Extraction quads = extraction_;
-    split(quads);
-    const auto count = static_cast<double>(quads.mesh.faces.size());
-    const double wanted = count / target_.count_ratio(extraction_.mesh);
-    constexpr double one_percent = 0.0099;  // strips are long: all that may be
-    const auto least = static_cast<std::size_t>(std::ceil(count - (1 + one_percent) * wanted));
-    const auto most = static_cast<std::size_t>(count - (1 - one_percent) * wanted);
-    const std::size_t gone = remove_strips(quads, least, most, context_);
-    if (gone < least) {
-      // Single quads for the rest, if these are fewer than the larger ones from before the split.
-      const std::size_t rest = least - gone;
-      if (rest > target_.faces_to_close(extraction_.mesh, one_percent)) return false;
-      if (reduce_faces(quads, posy_of(options_.faces), rest, context_) < rest) return false;
-    }
-    extraction_ = std::move(quads);
-    is_split_ = true;
-    return true;
+    if (take_strips(extraction)) return true;
+    const std::size_t wanted = target_.faces_to_close(extraction.mesh, target_.tolerance());
+    return reduce_faces(extraction, posy_of(options_.faces), wanted, context_) >= wanted;
   });
+}
+
+bool Pipeline::take_strips(Extraction& extraction) {
+  if (options_.faces != OutputFaces::quads) return false;
+  Extraction quads = extraction;
+  split(quads);
+  const auto count = static_cast<double>(quads.mesh.faces.size());
+  const double wanted = count / target_.count_ratio(extraction.mesh);
+  constexpr double one_percent = 0.0099;  // strips are long: all that may be
+  const auto least = static_cast<std::size_t>(std::ceil(count - (1 + one_percent) * wanted));
+  const auto most = static_cast<std::size_t>(count - (1 - one_percent) * wanted);
+  const std::size_t gone = remove_strips(quads, least, most, context_);
+  if (gone < least) {
+    // Single quads for the rest, if these are fewer than the larger ones from before the split.
+    const std::size_t rest = least - gone;
+    if (rest > target_.faces_to_close(extraction.mesh, one_percent)) return false;
+    if (reduce_faces(quads, posy_of(options_.faces), rest, context_) < rest) return false;
+  }
+  extraction = std::move(quads);
+  is_split_ = true;
+  return true;
 }
 
 void Pipeline::count_singularities() {

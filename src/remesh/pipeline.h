@@ -52,10 +52,11 @@ class Pipeline {
   RemeshResult result() &&;
 
  private:
-  /// Takes strips of quads away, and single ones for the rest, until there are no more faces than
-  /// wanted. Returns whether that is better than fewer of the larger quads: what is left is split
-  /// then.
-  bool take_strips();
+  /// Takes faces away until there are no more than wanted. Returns whether that came to be.
+  bool take_faces_away(Extraction& extraction);
+  /// Strips of quads, and single ones for the rest. Returns whether that is better than fewer of
+  /// the larger quads: what is left is split then, else as it was.
+  bool take_strips(Extraction& extraction);
   void drop_pieces();
 
   /// Guides onto the surface: those that edges must follow are cut into it.
@@ -64,6 +65,11 @@ class Pipeline {
   /// Sorts the surface along a curve, and all that goes with its vertices.
   std::vector<Index> put_in_order();
 
+  /// Which share of faces too many may be taken away again: more than the count may be off by only
+  /// where that does no harm to sizes, guides, or the utmost regularity.
+  double surplus() const;
+  /// The middle of what will do, as a share of the count.
+  double count_to_aim_at() const;
   /// How many faces lengths must be for, for each one that is wanted.
   double faces_to_ask_for() const;
   /// Lengths that have so many times the faces, but are what borders that stay need there. Returns

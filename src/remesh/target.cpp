@@ -86,6 +86,10 @@ double Target::count_ratio(const Mesh& mesh) const {
   return 1;
 }
 
+double Target::surplus() const {
+  return cells_ > 0 ? std::max(tolerance(), 1 / std::sqrt(cells_)) : tolerance();
+}
+
 std::size_t Target::faces_to_close(const Mesh& mesh, double tolerance) const {
   // Each of them takes away one cell: its faces, and its vertices.
   const double vertices = kind_ == OutputFaces::quads ? 4 : 1;

@@ -39,6 +39,9 @@ class Target {
 
   /// By which share a count may be off.
   double tolerance() const { return is_asked_for_ ? 0.0095 : 0.05; }
+  /// Which share of faces too many may be taken away again: about a row of cells, as one cannot
+  /// tell to within less how many there will be.
+  double surplus() const;
 
   /// How often reduce_faces() must act on a mesh so that it has no more than this share too many.
   std::size_t faces_to_close(const Mesh& mesh, double tolerance) const;
