@@ -142,6 +142,26 @@ TEST_F(Models, DoNotPassThroughThemselves) {
   if (checked == 0) GTEST_SKIP() << "none of the models is there";
 }
 
+/// Creases, corners and ragged borders are followed without any option.
+TEST_F(Models, LinesAreKept) {
+  int checked = 0;
+  for (const char* name : {"fandisk", "stanford-bunny", "suzanne"}) {
+    if (!files_.contains(name)) continue;
+    ++checked;
+    SCOPED_TRACE(name);
+    Mesh input = read_mesh(files_[name]);
+    clean(input);
+    for (const OutputFaces faces : {OutputFaces::quads, OutputFaces::quad_dominant}) {
+      const KeptLines kept = kept_lines(input, remesh_to(input, faces).mesh);
+      EXPECT_GE(kept.border.value_or(1), 0.97);
+      if (name != std::string("fandisk")) continue;
+      EXPECT_GE(kept.creases.value(), 0.99);
+      EXPECT_EQ(kept.corners_kept, kept.corners);
+    }
+  }
+  if (checked == 0) GTEST_SKIP() << "none of the models is there";
+}
+
 TEST_F(Models, FewOrientationSingularities) {
   const std::map<std::string, std::size_t> most = {
       {"fandisk", 34}, {"3holes", 38}, {"bumpy-cube", 32}};

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
 
 namespace meshgrain {
@@ -26,7 +27,8 @@ struct CleanReport {
 /// Removes, in linear time, what carries no surface, and says how much there was of it. The order
 /// of what is left stays, and normals and values follow their vertices. Marked edges are then
 /// sorted, the smaller index first, and each there once. Does not weld vertices.
-CleanReport clean(Mesh& mesh);
+/// Which `context` it is run in makes no difference to the result.
+CleanReport clean(Mesh& mesh, const Context& context = Context(1));
 
 /// Removes pieces of less area (squared input units), but never the largest, and returns their
 /// number. Pieces are faces that hang together by shared vertices. Order and attributes as above.

@@ -51,8 +51,9 @@ SurfaceDistance surface_distance(const Mesh& from, const Mesh& to, double refere
 
 /// How much of the lines of one surface the edges of another follow.
 struct KeptLines {
-  /// Shares of the length of creases and border that edges of the same kind are near (a tenth of an
-  /// edge) and along; creases may be half as sharp. Absent where there are none.
+  /// Shares of the length of creases and border that edges of the same kind follow: creases within
+  /// a tenth of an edge and 20 degrees, and at least half as sharp; the border, which is ragged on
+  /// scans, within a fifth of an edge. Absent where there are none.
   std::optional<double> creases, border;
   /// Where creases meet or turn by more than 40 degrees, and how many have a vertex as near.
   std::size_t corners = 0, corners_kept = 0;

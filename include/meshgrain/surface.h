@@ -8,12 +8,12 @@ namespace meshgrain {
 /// Area of a face (of its fan's triangles), in squared input units, and of all faces: zero for a
 /// point cloud.
 double face_area(const Mesh& mesh, std::size_t f);
-double surface_area(const Mesh& mesh);
+double surface_area(const Mesh& mesh, const Context& context = Context(1));
 
 struct EdgeLengths {
   double mean = 0, max = 0;
 };
-EdgeLengths edge_lengths(const Mesh& mesh);
+EdgeLengths edge_lengths(const Mesh& mesh, const Context& context = Context(1));
 
 /// Splits the edges of a triangle mesh that are longer than `max_length` at their midpoints, again
 /// and again until none is left: the surface stays exactly as it is (section 3.8 asks for an input

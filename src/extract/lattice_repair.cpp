@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "util/edge_of.h"
+#include "util/index_marks.h"
 
 namespace meshgrain {
 namespace {
@@ -34,7 +35,9 @@ double flaws(std::span<const Piece> pieces) {
 class LatticeRepair {
  public:
   explicit LatticeRepair(LatticeMesh& lattice)
-      : lattice_(lattice), map_(lattice.map), changed_(map_.vertices(), 0) {}
+      : lattice_(lattice), map_(lattice.map), changed_(map_.vertices(), 0) {
+    for (Index e = 0; e < map_.halfedges() / 2; ++e) mark(e);
+  }
 
   void run() {
     // Each kind of change lowers what it looks at; the bound is for those that work against each
@@ -50,32 +53,36 @@ class LatticeRepair {
   }
 
  private:
-  /// What a kind of change has looked at: for each edge or vertex, the time when it last did.
-  using Looked = std::vector<std::uint32_t>;
-
-  /// Whether one of these vertices' stars has changed since `looked` was last asked about this
-  /// element: what was refused before would be refused again.
-  bool is_news(Looked& looked, Index element, std::span<const Index> vertices) {
-    if (element >= looked.size()) looked.resize(element + 1 + element / 8, 0);
-    const std::uint32_t last = std::exchange(looked[element], now_ + 1);
-    return std::any_of(vertices.begin(), vertices.end(),
-                       [&](Index v) { return changed_[v] >= last; });
-  }
   /// The corners of the two triangles beside an edge.
   std::array<Index, 4> corners(Index h) const {
     const Index t = PolygonMap::twin(h);
     return {map_.origin(h), map_.origin(t), map_.origin(map_.prev(h)), map_.origin(map_.prev(t))};
   }
-  /// The same for an edge between two triangles.
-  bool is_news(Looked& looked, Index h) { return is_news(looked, h / 2, corners(h)); }
+
+  /// For every kind of change: what was refused before would be refused again, unless something has
+  /// changed in the stars of the corners beside the edge.
+  void mark(Index edge) {
+    zero_edges_.set(edge);
+    flips_.set(edge);
+    swings_.set(2 * edge);
+    swings_.set(2 * edge + 1);
+  }
+  void touch(Index v) {
+    changed_[v] = now_;
+    lattice_.for_each_leaving(v, [&](Index h) {
+      mark(h / 2);
+      mark(map_.next(h) / 2);
+    });
+  }
   void touch(std::span<const Index> vertices) {
     ++now_;
-    for (const Index v : vertices) changed_[v] = now_;
+    for (const Index v : vertices) touch(v);
   }
   void touch_star(Index v) {
     changed_.resize(map_.vertices(), 0);
-    changed_[v] = ++now_;
-    lattice_.for_each_leaving(v, [&](Index h) { changed_[map_.target(h)] = now_; });
+    ++now_;
+    touch(v);
+    lattice_.for_each_leaving(v, [&](Index h) { touch(map_.target(h)); });
   }
 
   Piece piece(Index h) const {
@@ -143,15 +150,17 @@ class LatticeRepair {
     bool any = false;
     for (bool again = true; again;) {
       again = false;
-      for (Index h = 0; h < map_.halfedges(); h += 2) {
-        if (map_.removed(h) || !lattice_.jumps[h / 2].is_zero()) continue;
+      const auto count = static_cast<Index>(map_.halfedges() / 2);
+      for (Index e = zero_edges_.take(0, count); e != no_index;
+           e = zero_edges_.take(e + 1, count)) {
+        const Index h = 2 * e;
+        if (map_.removed(h) || !lattice_.jumps[e].is_zero()) continue;
         // Whoever is held more stays, else who covers more of the surface.
         const Index a = map_.origin(h), b = map_.target(h);
         const auto& [cover, hold] = std::tie(lattice_.clusters.cover, lattice_.hold);
         const bool stays = hold[a] != hold[b] ? hold[a] > hold[b] : cover[a] >= cover[b];
         const Index into = stays ? h : PolygonMap::twin(h);
-        if (!is_news(zero_edges_, h / 2, std::array{a, b}) || !lattice_.may_collapse(into))
-          continue;
+        if (!lattice_.may_collapse(into)) continue;
         lattice_.collapse_edge(into);
         touch_star(stays ? a : b);
         again = any = true;
@@ -164,9 +173,10 @@ class LatticeRepair {
     bool any = false;
     for (bool again = true; again;) {
       again = false;
-      const auto count = static_cast<Index>(map_.halfedges());
-      for (Index h = 0; h < count; h += 2) {
-        if (map_.removed(h) || !is_news(flips_, h) || !lattice_.may_flip(h)) continue;
+      const auto count = static_cast<Index>(map_.halfedges() / 2);  // new ones wait
+      for (Index e = flips_.take(0, count); e != no_index; e = flips_.take(e + 1, count)) {
+        const Index h = 2 * e;
+        if (map_.removed(h) || !lattice_.may_flip(h)) continue;
         // The new edge may take its jump by way of either end of the old one.
         const double by_origin = flip_gain(h), by_target = flip_gain(h + 1);
         const Index better = by_origin >= by_target ? h : h + 1;
@@ -174,8 +184,9 @@ class LatticeRepair {
           if (std::max(by_origin, by_target) < least_gain) break;
           if ((side == h ? by_origin : by_target) < least_gain || !flip_keeps_angles(side))
             continue;
-          touch(corners(side));
+          const std::array<Index, 4> around = corners(side);
           lattice_.flip(side);
+          touch(around);
           again = any = true;
           break;
         }
@@ -215,10 +226,10 @@ class LatticeRepair {
   bool swing_edges() {
     bool any = false;
     const int posy = lattice_.posy;
-    for (Index h = 0; h < map_.halfedges(); ++h) {
+    const auto count = static_cast<Index>(map_.halfedges());
+    for (Index h = swings_.take(0, count); h != no_index; h = swings_.take(h + 1, count)) {
       const Index t = PolygonMap::twin(h);
       if (map_.removed(h) || lattice_.holes[h] || lattice_.holes[t]) continue;
-      if (!is_news(swings_[h % 2], h)) continue;
       const std::array<Piece, 2> before{piece(h), piece(t)};
       if (!before[0].lattice.is_cone() || before[1].lattice.is_cone()) continue;
       const Jump back = composed(before[0].lattice.around[1], before[0].lattice.around[2], posy);
@@ -461,7 +472,8 @@ class LatticeRepair {
   std::vector<Change> changes_;
   std::uint32_t now_ = 0;               // the number of changes so far
   std::vector<std::uint32_t> changed_;  // when each vertex's star last did
-  Looked zero_edges_, flips_, swings_[2];
+  IndexMarks zero_edges_, flips_;       // edges
+  IndexMarks swings_;                   // halfedges
   std::set<std::array<Index, 2>> split_;
   std::vector<std::uint32_t> sound_;  // when each vertex's star was last found without flaw
 };

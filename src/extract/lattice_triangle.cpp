@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 
 namespace meshgrain {
@@ -61,6 +62,34 @@ double LatticeMetric::angle(const LatticePoint& a, const LatticePoint& b) const 
                    : std::atan2(sine * std::sqrt(0.75), cosine + (a[0] * b[1] + a[1] * b[0]) / 2);
 }
 
+double LatticeMetric::angle(const std::array<int, 2>& a, const std::array<int, 2>& b) const {
+  // Edges are short: most angles are among a few.
+  constexpr int reach = 6, width = 2 * reach + 1;
+  using Table = std::array<double, width * width>;
+  // The angles by the cross product, and by twice the scalar product.
+  static const auto table = [](int symmetry) {
+    Table angles;
+    const double height = symmetry == 4 ? 1 : std::sqrt(0.75);
+    for (int cross = -reach; cross <= reach; ++cross) {
+      for (int twice = -reach; twice <= reach; ++twice) {
+        angles[static_cast<std::size_t>((cross + reach) * width + twice + reach)] =
+            std::atan2(cross * height, twice / 2.0);
+      }
+    }
+    return angles;
+  };
+  static const Table four = table(4), six = table(6);
+  const int cross = a[0] * b[1] - a[1] * b[0];
+  const int twice = 2 * (a[0] * b[0] + a[1] * b[1]) + (posy == 6 ? a[0] * b[1] + a[1] * b[0] : 0);
+  // Opposite vectors may be either way around; it is the signs of zeros that tell.
+  const bool is_straight = cross == 0 && twice < 0;
+  if (is_straight || std::abs(cross) > reach || std::abs(twice) > reach) {
+    return angle(point(a), point(b));
+  }
+  return (posy == 6 ? six
+                    : four)[static_cast<std::size_t>((cross + reach) * width + twice + reach)];
+}
+
 LatticePoint LatticeTriangle::apex(int corner) const {
   return fixed_point(sum(corner), posy);
 }
@@ -92,9 +121,9 @@ double LatticeTriangle::flat_area(bool is_plane) const {
 double LatticeTriangle::angle(int corner) const {
   const LatticeMetric metric{posy};
   const Jump& to_next = around[corner];
-  const LatticePoint from = point(to_next.t);
-  const LatticePoint to = point(reversed(around[(corner + 2) % 3], posy).t);
-  if (!is_cone()) return metric.angle(from, to);
+  const std::array<int, 2> last = reversed(around[(corner + 2) % 3], posy).t;
+  if (!is_cone()) return metric.angle(to_next.t, last);
+  const LatticePoint from = point(to_next.t), to = point(last);
   const LatticePoint top = apex(corner);
   if (metric.squared_length(top) < rounding) {  // the other way around to the last edge
     return metric.angle(from, point(composed(to_next, around[(corner + 1) % 3], posy).t));

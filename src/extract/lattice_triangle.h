@@ -16,6 +16,7 @@ struct LatticeMetric {
   double squared_length(const std::array<int, 2>& t) const;
   /// The angle from a to b, in radians, between -pi and pi.
   double angle(const LatticePoint& a, const LatticePoint& b) const;
+  double angle(const std::array<int, 2>& a, const std::array<int, 2>& b) const;
 };
 
 /// A triangle by the jumps of its three edges alone, each in the frame of the corner it leaves.

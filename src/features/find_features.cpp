@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "features/mechanical_creases.h"
 #include "mesh/border.h"
@@ -34,14 +35,21 @@ bool FeatureLines::is_closed(std::size_t line) const {
 
 std::vector<EdgeOfLine> feature_edges(const Mesh& mesh, const FeatureOptions& options,
                                       const Context& context) {
-  Edges creases, marked;
-  if (options.creases == Creases::automatic) creases = mechanical_creases(mesh, 1, context);
-  if (options.creases == Creases::by_angle) {
-    creases = crease_edges(mesh, options.crease_degrees, context);
+  Edges rim, creases, marked;
+  if (options.creases == Creases::automatic) {
+    auto found = rim_and_sharp_edges(mesh, flat_degrees, context);
+    rim = std::move(found.rim);
+    creases = mechanical_creases(mesh, found.sharp, 1);
+  } else if (options.creases == Creases::by_angle) {
+    auto found = rim_and_sharp_edges(mesh, options.crease_degrees, context);
+    rim = std::move(found.rim);
+    for (const SharpEdge& edge : found.sharp) creases.push_back(edge.ends);
+  } else {
+    rim = rim_edges(mesh, context);
   }
   if (options.creases != Creases::none) marked = inner_marks(mesh, context);
   std::vector<EdgeOfLine> edges;
-  for (const auto& ends : rim_edges(mesh, context)) edges.push_back({ends, LineKind::border});
+  for (const auto& ends : rim) edges.push_back({ends, LineKind::border});
   for (const auto& ends : marked) edges.push_back({ends, LineKind::marked});
   for (const auto& ends : creases) {
     const bool is_marked = std::binary_search(marked.begin(), marked.end(), ends);

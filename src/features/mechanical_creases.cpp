@@ -32,7 +32,12 @@ CreaseLengths crease_lengths(const Mesh& mesh, std::span<const SharpEdge> edges)
 
 std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh, double clearly,
                                                      const Context& context) {
-  const std::vector<SharpEdge> edges = sharp_edges(mesh, flat_degrees, context);
+  return mechanical_creases(mesh, sharp_edges(mesh, flat_degrees, context), clearly);
+}
+
+std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh,
+                                                     std::span<const SharpEdge> edges,
+                                                     double clearly) {
   const CreaseLengths lengths = crease_lengths(mesh, edges);
   if (lengths.clear <= clearly * lengths.doubtful) return {};
   // The threshold is where it matters least.

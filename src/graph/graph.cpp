@@ -6,6 +6,7 @@
 
 #include "graph/nearest_neighbors.h"
 #include "mesh/vertex_faces.h"
+#include "mesh/vertex_normals.h"
 #include "meshgrain/error.h"
 #include "meshgrain/normals.h"
 
@@ -68,18 +69,23 @@ void require_triangles(const Mesh& mesh) {
 Graph vertex_graph(const Mesh& mesh, const GraphOptions& options, const Context& context) {
   Graph graph;
   graph.positions = mesh.positions;
-  graph.normals = vertex_normals(mesh, options.crease_degrees, context);
-  const VertexFaces around = vertex_faces(mesh);
+  const VertexFaces around = vertex_faces(mesh, context);
+  graph.normals = vertex_normals(mesh, around, options.crease_degrees, context);
   gather_neighbors(
       graph,
       [&](Index v, std::vector<Index>& out) {
+        // In a closed fan every neighbour follows v in one face.
         const std::size_t start = out.size();
-        for (const Index f : around[v]) {
-          for (const Index w : mesh.faces[f]) {
-            if (w != v) out.push_back(w);
-          }
-        }
-        sort_unique_from(out, start);
+        const auto add = [&](Index f, std::size_t steps) {
+          const auto face = mesh.faces[f];
+          const std::size_t k = face[0] == v ? 0 : face[1] == v ? 1 : 2;
+          const Index w = face[(k + steps) % 3];
+          const auto first = out.begin() + static_cast<std::ptrdiff_t>(start);
+          if (std::find(first, out.end(), w) == out.end()) out.push_back(w);
+        };
+        for (const Index f : around[v]) add(f, 1);
+        for (const Index f : around[v]) add(f, 2);
+        std::sort(out.begin() + static_cast<std::ptrdiff_t>(start), out.end());
       },
       context);
 
@@ -132,7 +138,7 @@ Graph face_graph(const Mesh& mesh, const Context& context) {
     graph.areas[f] = 0.5f * twice_area;
     graph.normals[f] = twice_area > 0 ? Vec3(normal / twice_area) : Vec3::UnitZ();
   }
-  const VertexFaces around = vertex_faces(mesh);
+  const VertexFaces around = vertex_faces(mesh, context);
   gather_neighbors(
       graph,
       [&](Index f, std::vector<Index>& out) {

@@ -14,11 +14,16 @@ namespace {
 
 using Edges = std::vector<std::array<Index, 2>>;
 
-constexpr double near = 0.1;  // edges of the output
+/// What counts as following a line: how near, in edges of the output, and how much along it.
+struct Nearness {
+  double distance, cosine;
+};
+constexpr Nearness for_creases{0.1, 0.94};  // 20 degrees
+constexpr Nearness for_borders{0.2, 0};     // those of scans are ragged
 
-/// The share of the length of `lines` that is near an edge of `others` and along it.
+/// The share of the length of `lines` that edges of `others` follow.
 double followed(const Mesh& input, const Edges& lines, const Mesh& output, const Edges& others,
-                double edge) {
+                double edge, const Nearness& nearness) {
   if (others.empty()) return 0;
   Mesh segments;  // triangles without area
   segments.positions = output.positions;
@@ -30,15 +35,16 @@ double followed(const Mesh& input, const Edges& lines, const Mesh& output, const
     const Eigen::Vector3d p = input.positions[a].cast<double>() + shift;
     const Eigen::Vector3d along = (input.positions[b] - input.positions[a]).cast<double>();
     const auto samples = static_cast<int>(std::ceil(along.norm() / (edge / 4)));
+    const double near = nearness.distance * edge;
     for (int k = 0; k < samples; ++k) {
       const double step = along.norm() / samples;
       length += step;
-      const auto hit = tree.closest(p + (k + 0.5) / samples * along, near * near * edge * edge);
+      const auto hit = tree.closest(p + (k + 0.5) / samples * along, near * near);
       if (hit.triangle == no_index) continue;
       const auto [c, d] = others[hit.triangle];
       const Eigen::Vector3d other = (output.positions[d] - output.positions[c]).cast<double>();
-      constexpr double cos20 = 0.94;
-      if (std::abs(along.dot(other)) > cos20 * along.norm() * other.norm()) kept += step;
+      const double lengths = along.norm() * other.norm();
+      if (std::abs(along.dot(other)) >= nearness.cosine * lengths) kept += step;
     }
   }
   return length > 0 ? kept / length : 1;
@@ -68,18 +74,20 @@ KeptLines kept_lines(const Mesh& input, const Mesh& output, double crease_degree
   const double edge = edge_lengths(output).mean;
   const Edges creases = crease_edges(input, crease_degrees);
   if (!creases.empty()) {
-    result.creases =
-        followed(input, creases, output, crease_edges(output, crease_degrees / 2), edge);
+    result.creases = followed(input, creases, output, crease_edges(output, crease_degrees / 2),
+                              edge, for_creases);
   }
   const Edges border = border_edges(input);
-  if (!border.empty()) result.border = followed(input, border, output, border_edges(output), edge);
+  if (!border.empty())
+    result.border = followed(input, border, output, border_edges(output), edge, for_borders);
   Mesh points;
   points.positions = output.positions;
   const Bvh tree(points);
   for (const Index v : corners_of(input, creases)) {
     const Eigen::Vector3d p = input.positions[v].cast<double>() + input.origin - output.origin;
     ++result.corners;
-    result.corners_kept += tree.closest(p, near * near * edge * edge).triangle != no_index;
+    const double near = for_creases.distance * edge;
+    result.corners_kept += tree.closest(p, near * near).triangle != no_index;
   }
   return result;
 }

@@ -32,10 +32,11 @@ std::vector<Selected> select_edges(const Mesh& mesh, const Take& take, const Con
       uses.clear();
       for (const Index f : around[v]) {
         const auto face = mesh.faces[f];
-        for (std::size_t k = 0; k < face.size(); ++k) {
-          const Index from = face[k], to = face[k + 1 == face.size() ? 0 : k + 1];
+        Index from = face.back();
+        for (const Index to : face) {
           if (from == a && to > a) uses.push_back({to, f, true});
           if (to == a && from > a) uses.push_back({from, f, false});
+          from = to;
         }
       }
       std::sort(uses.begin(), uses.end(),
@@ -91,27 +92,51 @@ std::vector<InnerEdge> inner_edges(const Mesh& mesh,
       context);
 }
 
-std::vector<SharpEdge> sharp_edges(const Mesh& mesh, double degrees, const Context& context) {
-  const double cosine = std::cos(degrees * std::numbers::pi / 180);
-  const auto normal = [&](Index f) {
-    const auto face = mesh.faces[f];
-    Vec3 sum = Vec3::Zero();
-    for (std::size_t k = 2; k < face.size(); ++k) {
-      sum += (mesh.positions[face[k - 1]] - mesh.positions[face[0]])
-                 .cross(mesh.positions[face[k]] - mesh.positions[face[0]]);
+RimAndSharpEdges rim_and_sharp_edges(const Mesh& mesh, double degrees, const Context& context) {
+  // Unit normals of the faces, or zero.
+  std::vector<Vec3> normals(mesh.faces.size());
+  context.for_ranges(normals.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto face = mesh.faces[f];
+      Vec3 sum = Vec3::Zero();
+      for (std::size_t k = 2; k < face.size(); ++k) {
+        sum += (mesh.positions[face[k - 1]] - mesh.positions[face[0]])
+                   .cross(mesh.positions[face[k]] - mesh.positions[face[0]]);
+      }
+      const float length = sum.norm();
+      normals[f] = length > 0 ? Vec3(sum / length) : Vec3(Vec3::Zero());
     }
-    return sum;
+  });
+  struct Found {
+    Edge ends;
+    double cosine;
   };
-  return select_edges<SharpEdge>(
+  constexpr double on_rim = 2;  // in place of a cosine
+  const double flattest = std::cos(degrees * std::numbers::pi / 180);
+  const auto found = select_edges<Found>(
       mesh,
-      [&](Index a, Index b, const EdgeFaces& faces, std::vector<SharpEdge>& out) {
-        if (faces.forth != 1 || faces.back != 1) return;
-        const Vec3 left = normal(faces.left), right = normal(faces.right);
-        const double lengths = static_cast<double>(left.norm()) * right.norm();
-        const double product = left.dot(right);
-        if (lengths > 0 && product < cosine * lengths) out.push_back({{a, b}, product / lengths});
+      [&](Index a, Index b, const EdgeFaces& faces, std::vector<Found>& out) {
+        if (faces.forth != 1 || faces.back != 1) return out.push_back({{a, b}, on_rim});
+        const Vec3 &left = normals[faces.left], &right = normals[faces.right];
+        const double cosine = left.dot(right);
+        if (cosine < flattest && !left.isZero(0) && !right.isZero(0)) {
+          out.push_back({{a, b}, cosine});
+        }
       },
       context);
+  RimAndSharpEdges result;
+  for (const auto& [ends, cosine] : found) {
+    if (cosine == on_rim) {
+      result.rim.push_back(ends);
+    } else {
+      result.sharp.push_back({ends, cosine});
+    }
+  }
+  return result;
+}
+
+std::vector<SharpEdge> sharp_edges(const Mesh& mesh, double degrees, const Context& context) {
+  return rim_and_sharp_edges(mesh, degrees, context).sharp;
 }
 
 std::vector<std::array<Index, 2>> crease_edges(const Mesh& mesh, double degrees,

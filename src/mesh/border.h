@@ -36,6 +36,13 @@ struct SharpEdge {
   double cosine;
 };
 
+/// rim_edges() and sharp_edges(), found together.
+struct RimAndSharpEdges {
+  std::vector<std::array<Index, 2>> rim;
+  std::vector<SharpEdge> sharp;
+};
+RimAndSharpEdges rim_and_sharp_edges(const Mesh& mesh, double degrees, const Context& context);
+
 /// The edges between two faces whose normals differ by more than `degrees`.
 std::vector<SharpEdge> sharp_edges(const Mesh& mesh, double degrees,
                                    const Context& context = Context(1));

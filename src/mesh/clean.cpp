@@ -12,6 +12,7 @@
 #include "mesh/duplicates.h"
 #include "mesh/marks.h"
 #include "meshgrain/surface.h"
+#include "util/collect.h"
 #include "util/edge_of.h"
 #include "util/sort_unique.h"
 #include "util/union_find.h"
@@ -31,21 +32,13 @@ std::size_t lowest_corner(std::span<const Index> face) {
   return static_cast<std::size_t>(std::ranges::min_element(face) - face.begin());
 }
 
-/// What all rotations of a face have in common, in both directions: the lowest corner, the two
-/// beside it, and their number. Of triangles that is all.
-struct FaceKey {
-  Index lowest, beside, other;
-  std::uint32_t degree;
-  Index face;
-
-  static FaceKey of(std::span<const Index> face, Index number) {
-    const std::size_t n = face.size();
-    const std::size_t low = lowest_corner(face);
-    const auto [beside, other] = std::minmax(face[(low + 1) % n], face[(low + n - 1) % n]);
-    return {face[low], beside, other, static_cast<std::uint32_t>(n), number};
-  }
-  auto whole() const { return std::tuple(beside, other, degree); }
-};
+/// What all rotations of a face have in common, in both directions, besides the lowest corner: the
+/// two beside it, and their number. Of triangles that is all.
+std::array<Index, 3> key_of(std::span<const Index> face) {
+  const std::size_t n = face.size(), low = lowest_corner(face);
+  const auto [beside, other] = std::minmax(face[(low + 1) % n], face[(low + n - 1) % n]);
+  return {beside, other, static_cast<Index>(n)};
+}
 
 /// The corners of a face from the lowest on, towards the lower of its two neighbours.
 std::vector<Index> canonical(std::span<const Index> face) {
@@ -57,38 +50,71 @@ std::vector<Index> canonical(std::span<const Index> face) {
   return result;
 }
 
-/// Marks all faces that have the corners of an earlier one. Returns their number.
-std::size_t find_duplicates(const Faces& faces, std::size_t vertices,
-                            std::vector<std::uint8_t>& is_duplicate) {
+/// The faces that have the corners of an earlier one.
+std::vector<Index> find_duplicates(const Faces& faces, std::size_t vertices,
+                                   const Context& context) {
   // Faces with the same lowest corner are next to each other, without a sort of them all.
-  std::vector<Index> ends(vertices + 1, 0);
+  std::vector<Index> ends(vertices + 1, 0), sorted(faces.size());
   for (std::size_t f = 0; f < faces.size(); ++f) ++ends[std::ranges::min(faces[f]) + 1];
   std::partial_sum(ends.begin(), ends.end(), ends.begin());
-  std::vector<FaceKey> keys(faces.size());
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    const FaceKey key = FaceKey::of(faces[f], static_cast<Index>(f));
-    keys[ends[key.lowest]++] = key;
+    sorted[ends[std::ranges::min(faces[f])]++] = static_cast<Index>(f);
   }
-  std::size_t count = 0;
-  is_duplicate.assign(faces.size(), 0);
-  for (auto first = keys.begin(); first != keys.end();) {
-    const auto last = keys.begin() + ends[first->lowest];
-    if (last - first > 1) {
-      std::sort(first, last, [](const FaceKey& a, const FaceKey& b) {
-        return std::tuple(a.whole(), a.face) < std::tuple(b.whole(), b.face);
-      });
-    }
-    for (auto k = first; k != last; ++k) {
-      for (auto earlier = k; earlier-- != first && earlier->whole() == k->whole();) {
-        if (k->degree > 3 && canonical(faces[k->face]) != canonical(faces[earlier->face])) continue;
-        is_duplicate[k->face] = 1;
-        ++count;
-        break;
+  struct Keyed {
+    std::array<Index, 3> key;
+    Index face;
+    bool operator<(const Keyed& o) const { return std::tie(key, face) < std::tie(o.key, o.face); }
+  };
+  const auto duplicates_around = [&](std::size_t first, std::size_t last, std::vector<Index>& out) {
+    std::vector<Keyed> same;
+    for (std::size_t v = first; v < last; ++v) {
+      same.clear();
+      for (std::size_t k = v == 0 ? 0 : ends[v - 1]; k < ends[v]; ++k) {
+        same.push_back({key_of(faces[sorted[k]]), sorted[k]});
+      }
+      std::sort(same.begin(), same.end());
+      for (std::size_t k = 1; k < same.size(); ++k) {
+        for (std::size_t earlier = k; earlier-- > 0 && same[earlier].key == same[k].key;) {
+          const Index f = same[k].face, g = same[earlier].face;
+          if (faces.degree(f) > 3 && canonical(faces[f]) != canonical(faces[g])) continue;
+          out.push_back(f);
+          break;
+        }
       }
     }
-    first = last;
+  };
+  return collect<Index>(vertices, duplicates_around, context);
+}
+
+/// Drops repeated corners, and faces without three different ones.
+void drop_repeated_corners(Mesh& mesh, CleanReport& report) {
+  std::vector<Index> face, scratch;
+  const auto is_good = [&](std::size_t f) {
+    const auto corners = std::as_const(mesh.faces)[f];
+    if (corners.size() < 3) return false;
+    Index last = corners.back();
+    for (const Index v : corners) {
+      if (std::exchange(last, v) == v) return false;
+    }
+    return !repeats_a_vertex(corners, scratch);
+  };
+  std::size_t f = 0;
+  while (f < mesh.faces.size() && is_good(f)) ++f;
+  if (f == mesh.faces.size()) return;
+  Faces faces;
+  faces.reserve(mesh.faces.size(), mesh.faces.corners().size());
+  for (f = 0; f < mesh.faces.size(); ++f) {
+    face.clear();
+    for (const Index v : std::as_const(mesh.faces)[f])
+      if (face.empty() || face.back() != v) face.push_back(v);
+    while (face.size() > 1 && face.front() == face.back()) face.pop_back();
+    report.repeated_corners += mesh.faces.degree(f) - face.size();
+    if (face.size() < 3 || repeats_a_vertex(face, scratch))
+      ++report.degenerate_faces;
+    else
+      faces.push_back(face);
   }
-  return count;
+  mesh.faces = std::move(faces);
 }
 
 /// Keeps the vertices of this increasing list.
@@ -143,7 +169,7 @@ std::size_t drop_unused_vertices(Mesh& mesh) {
 
 }  // namespace
 
-CleanReport clean(Mesh& mesh) {
+CleanReport clean(Mesh& mesh, const Context& context) {
   CleanReport report;
   if (mesh.is_point_cloud()) {
     report.loose_marks = drop_loose_marks(mesh);
@@ -153,29 +179,16 @@ CleanReport clean(Mesh& mesh) {
     return report;
   }
 
-  Faces faces;
-  faces.reserve(mesh.faces.size(), mesh.faces.corners().size());
-  std::vector<Index> face, scratch;
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    face.clear();
-    for (const Index v : std::as_const(mesh.faces)[f])
-      if (face.empty() || face.back() != v) face.push_back(v);
-    while (face.size() > 1 && face.front() == face.back()) face.pop_back();
-    report.repeated_corners += mesh.faces.degree(f) - face.size();
-    if (face.size() < 3 || repeats_a_vertex(face, scratch))
-      ++report.degenerate_faces;
-    else
-      faces.push_back(face);
-  }
-  std::vector<std::uint8_t> is_duplicate;
-  report.duplicate_faces = find_duplicates(faces, mesh.positions.size(), is_duplicate);
-  if (report.duplicate_faces > 0) {
-    mesh.faces = {};
+  drop_repeated_corners(mesh, report);
+  const auto duplicates = find_duplicates(mesh.faces, mesh.positions.size(), context);
+  report.duplicate_faces = duplicates.size();
+  if (!duplicates.empty()) {
+    std::vector<std::uint8_t> is_duplicate(mesh.faces.size(), 0);
+    for (const Index f : duplicates) is_duplicate[f] = 1;
+    const Faces faces = std::exchange(mesh.faces, {});
     for (std::size_t f = 0; f < faces.size(); ++f) {
-      if (!is_duplicate[f]) mesh.faces.push_back(std::as_const(faces)[f]);
+      if (!is_duplicate[f]) mesh.faces.push_back(faces[f]);
     }
-  } else {
-    mesh.faces = std::move(faces);
   }
   report.loose_marks = drop_loose_marks(mesh);
   report.unused_vertices = drop_unused_vertices(mesh);

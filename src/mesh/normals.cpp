@@ -7,7 +7,7 @@
 #include <numbers>
 #include <span>
 
-#include "mesh/vertex_faces.h"
+#include "mesh/vertex_normals.h"
 
 namespace meshgrain {
 namespace {
@@ -109,6 +109,11 @@ void fill_missing(const Mesh& mesh, const VertexFaces& around, std::vector<Vec3>
 }  // namespace
 
 std::vector<Vec3> vertex_normals(const Mesh& mesh, double crease_degrees, const Context& context) {
+  return vertex_normals(mesh, vertex_faces(mesh, context), crease_degrees, context);
+}
+
+std::vector<Vec3> vertex_normals(const Mesh& mesh, const VertexFaces& around, double crease_degrees,
+                                 const Context& context) {
   std::vector<Vec3> face_normals(mesh.faces.size());
   context.for_ranges(mesh.faces.size(), 4096, [&](std::size_t begin, std::size_t end) {
     context.check();
@@ -116,7 +121,6 @@ std::vector<Vec3> vertex_normals(const Mesh& mesh, double crease_degrees, const 
       face_normals[f] = face_normal(mesh.positions, mesh.faces[f]);
   });
 
-  const VertexFaces around = vertex_faces(mesh, context);
   const bool creases = crease_degrees >= 0;
   const double cosine = std::cos(crease_degrees * std::numbers::pi / 180);
   std::vector<Vec3> normals(mesh.positions.size(), Vec3::Zero());

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "meshgrain/error.h"
 #include "meshgrain/surface.h"
@@ -28,20 +30,35 @@ bool is_long(const Mesh& mesh, const Limit& limit, Index a, Index b) {
   return (mesh.positions[b] - mesh.positions[a]).squaredNorm() > longest * longest;
 }
 
-template <typename Limit>
-LongEdges long_edges(const Mesh& mesh, const Limit& limit, const Context& context) {
-  LongEdges edges = collect<std::array<Index, 2>>(
-      mesh.faces.size(),
-      [&](std::size_t begin, std::size_t end, LongEdges& out) {
-        for (std::size_t f = begin; f < end; ++f) {
+/// Which of these faces have an edge that is too long.
+template <typename Limit, typename FaceAt>
+std::vector<Index> faces_to_split(const Mesh& mesh, const Limit& limit, std::size_t count,
+                                  const FaceAt& face_at, const Context& context) {
+  return collect<Index>(
+      count,
+      [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+        for (std::size_t k = begin; k < end; ++k) {
+          const Index f = face_at(k);
           const auto face = mesh.faces[f];
-          for (std::size_t k = 0; k < 3; ++k) {
-            const Index a = face[k], b = face[(k + 1) % 3];
-            if (is_long(mesh, limit, a, b)) out.push_back(edge_of(a, b));
+          if (is_long(mesh, limit, face[0], face[1]) || is_long(mesh, limit, face[1], face[2]) ||
+              is_long(mesh, limit, face[2], face[0])) {
+            out.push_back(f);
           }
         }
       },
       context);
+}
+
+template <typename Limit>
+LongEdges long_edges(const Mesh& mesh, const Limit& limit, std::span<const Index> faces) {
+  LongEdges edges;
+  for (const Index f : faces) {
+    const auto face = mesh.faces[f];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index a = face[k], b = face[(k + 1) % 3];
+      if (is_long(mesh, limit, a, b)) edges.push_back(edge_of(a, b));
+    }
+  }
   sort_unique(edges);
   return edges;
 }
@@ -68,10 +85,12 @@ void split_marks(const LongEdges& edges, Index first, Mesh& mesh) {
   }
 }
 
+using Triangle = std::array<Index, 3>;
+
 /// Splits one triangle by the midpoints of its long edges (`mid[k]` on the edge from corner k to
 /// k + 1).
-void split(const std::vector<Vec3>& positions, std::array<Index, 3> v, std::array<Index, 3> mid,
-           Faces& out) {
+void split(const std::vector<Vec3>& positions, Triangle v, Triangle mid,
+           std::vector<Triangle>& out) {
   const int count = (mid[0] != no_index) + (mid[1] != no_index) + (mid[2] != no_index);
   // Turn the triangle so that the pattern starts at the first edge: the split one if there is one,
   // the whole one last if there are two.
@@ -105,16 +124,45 @@ void split(const std::vector<Vec3>& positions, std::array<Index, 3> v, std::arra
   }
 }
 
+/// Puts parts in the places of some faces, in increasing order, those of each up to its end.
+/// Returns where they are then.
+std::vector<Index> put_in_place(Faces& faces, std::span<const Index> split_faces,
+                                std::span<const Triangle> parts,
+                                std::span<const std::size_t> ends) {
+  Faces result = Faces::uniform(faces.size() + parts.size() - split_faces.size(), 3);
+  std::vector<Index> places;
+  places.reserve(parts.size());
+  const Index* from = std::as_const(faces).corners().data();
+  Index* const begin = result.corners().data();
+  Index* to = begin;
+  std::size_t done = 0, part = 0;
+  for (std::size_t k = 0; k < split_faces.size(); ++k) {
+    to = std::copy(from + 3 * done, from + 3 * std::size_t{split_faces[k]}, to);
+    done = split_faces[k] + std::size_t{1};
+    for (; part < ends[k]; ++part) {
+      places.push_back(static_cast<Index>((to - begin) / 3));
+      to = std::ranges::copy(parts[part], to).out;
+    }
+  }
+  std::copy(from + 3 * done, from + 3 * faces.size(), to);
+  faces = std::move(result);
+  return places;
+}
+
 /// Returns whether any edge was split. `on_split` is told of the edge that each new vertex lies on.
 template <typename Limit, typename Split>
 bool split_long_edges(Mesh& mesh, const Limit& limit, const Split& on_split,
                       const Context& context) {
   if (mesh.faces.empty()) return false;
+  std::vector<Index> faces = faces_to_split(
+      mesh, limit, mesh.faces.size(), [](std::size_t k) { return static_cast<Index>(k); }, context);
+  std::vector<Triangle> parts;
+  std::vector<std::size_t> ends;  // of the parts of each face
   // Each round halves what is too long, so 64 rounds pass any finite length in single precision.
   for (int round = 0; round < 64; ++round) {
     context.check();
-    const LongEdges edges = long_edges(mesh, limit, context);
-    if (edges.empty()) return round > 0;
+    if (faces.empty()) return round > 0;
+    const LongEdges edges = long_edges(mesh, limit, faces);
     const auto old_count = static_cast<Index>(mesh.positions.size());
     if (edges.size() + old_count > 0xfffffff0u) {
       throw Error(
@@ -125,19 +173,24 @@ bool split_long_edges(Mesh& mesh, const Limit& limit, const Split& on_split,
       append_midpoint(mesh, a, b);
       on_split(a, b);
     }
-    Faces finer;
-    finer.reserve(mesh.faces.size() + 2 * edges.size(), 3 * (mesh.faces.size() + 2 * edges.size()));
-    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    parts.clear();
+    ends.clear();
+    for (const Index f : faces) {
       const auto face = std::as_const(mesh.faces)[f];
-      std::array<Index, 3> mid;
+      const Triangle corners{face[0], face[1], face[2]};
+      Triangle mid;
       for (std::size_t k = 0; k < 3; ++k) {
-        const Index a = face[k], b = face[(k + 1) % 3];
-        mid[k] = is_long(mesh, limit, a, b) ? old_count + find(edges, a, b) : no_index;
+        const Index id = find(edges, corners[k], corners[(k + 1) % 3]);
+        mid[k] = id == no_index ? no_index : old_count + id;
       }
-      split(mesh.positions, {face[0], face[1], face[2]}, mid, finer);
+      split(mesh.positions, corners, mid, parts);
+      ends.push_back(parts.size());
     }
-    mesh.faces = std::move(finer);
+    // Only the parts of a split face can have edges that are too long.
+    const std::vector<Index> changed = put_in_place(mesh.faces, faces, parts, ends);
     split_marks(edges, old_count, mesh);
+    faces = faces_to_split(
+        mesh, limit, changed.size(), [&](std::size_t k) { return changed[k]; }, context);
   }
   return true;
 }

@@ -2,9 +2,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "util/hilbert.h"
+#include "util/sum.h"
 
 namespace meshgrain {
 
@@ -18,66 +20,97 @@ double face_area(const Mesh& mesh, std::size_t f) {
   return area;
 }
 
-double surface_area(const Mesh& mesh) {
-  double area = 0;
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) area += face_area(mesh, f);
-  return area;
+double surface_area(const Mesh& mesh, const Context& context) {
+  return sum_over_ranges(
+      mesh.faces.size(),
+      [&](std::size_t begin, std::size_t end) {
+        double area = 0;
+        for (std::size_t f = begin; f < end; ++f) area += face_area(mesh, f);
+        return area;
+      },
+      context);
 }
 
-EdgeLengths edge_lengths(const Mesh& mesh) {
-  EdgeLengths result;
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    const auto face = mesh.faces[f];
-    for (std::size_t k = 0; k < face.size(); ++k) {
-      const Vec3& next = mesh.positions[face[k + 1 == face.size() ? 0 : k + 1]];
-      const double length = (next - mesh.positions[face[k]]).norm();
-      result.mean += length;
-      result.max = std::max(result.max, length);
-    }
-  }
-  if (!mesh.faces.empty()) result.mean /= static_cast<double>(mesh.faces.corners().size());
-  return result;
+EdgeLengths edge_lengths(const Mesh& mesh, const Context& context) {
+  struct Lengths {
+    double sum = 0, max = 0;
+    Lengths operator+(const Lengths& o) const { return {sum + o.sum, std::max(max, o.max)}; }
+  };
+  const auto lengths = sum_over_ranges(
+      mesh.faces.size(),
+      [&](std::size_t begin, std::size_t end) {
+        Lengths result;
+        for (std::size_t f = begin; f < end; ++f) {
+          const auto face = mesh.faces[f];
+          Index last = face.back();
+          for (const Index v : face) {
+            const double length = (mesh.positions[v] - mesh.positions[last]).norm();
+            result = result + Lengths{length, length};
+            last = v;
+          }
+        }
+        return result;
+      },
+      context);
+  const auto sides = static_cast<double>(std::max<std::size_t>(1, mesh.faces.corners().size()));
+  return {lengths.sum / sides, lengths.max};
 }
 
 namespace {
 
+constexpr std::size_t grain = 8192;
+
 template <typename T>
-void permute(std::vector<T>& values, const std::vector<Index>& order) {
+void permute(std::vector<T>& values, const std::vector<Index>& order, const Context& context) {
   if (values.empty()) return;
   std::vector<T> result(values.size());
-  for (std::size_t k = 0; k < order.size(); ++k) result[k] = values[order[k]];
+  context.for_ranges(order.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) result[k] = values[order[k]];
+  });
   values.swap(result);
+}
+
+/// Sorts faces by their first vertex, those with the same one in the order that they had.
+void sort_faces(Faces& faces, std::size_t vertices, const Context& context) {
+  std::vector<Index> first(faces.size());
+  context.for_ranges(faces.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) first[f] = std::ranges::min(std::as_const(faces)[f]);
+  });
+  std::vector<Index> start(vertices + 1, 0), order(faces.size());
+  for (const Index v : first) ++start[v + 1];
+  for (std::size_t v = 0; v < vertices; ++v) start[v + 1] += start[v];
+  for (std::size_t f = 0; f < first.size(); ++f) order[start[first[f]]++] = static_cast<Index>(f);
+  Faces sorted;
+  if (const std::size_t degree = faces.uniform_degree(); degree > 0) {
+    sorted = Faces::uniform(faces.size(), degree);
+    context.for_ranges(faces.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        std::ranges::copy(std::as_const(faces)[order[k]], sorted[k].begin());
+      }
+    });
+  } else {
+    sorted.reserve(faces.size(), faces.corners().size());
+    for (const Index f : order) sorted.push_back(std::as_const(faces)[f]);
+  }
+  faces = std::move(sorted);
 }
 
 }  // namespace
 
 std::vector<Index> sort_along_curve(Mesh& mesh, const Context& context) {
   const std::vector<Index> order = hilbert_order(mesh.positions, context);
-  permute(mesh.positions, order);
-  permute(mesh.normals, order);
-  permute(mesh.values, order);
+  permute(mesh.positions, order, context);
+  permute(mesh.normals, order, context);
+  permute(mesh.values, order, context);
 
   std::vector<Index> rank(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) rank[order[k]] = static_cast<Index>(k);
-  for (Index& v : mesh.faces.corners()) v = rank[v];
+  const std::span<Index> corners = mesh.faces.corners();
+  context.for_ranges(corners.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) corners[c] = rank[corners[c]];
+  });
   for (auto& edge : mesh.marked_edges) edge = {rank[edge[0]], rank[edge[1]]};
-
-  // Counting sort of the faces by their first vertex along the curve.
-  std::vector<Index> start(order.size() + 1, 0);
-  const auto first_vertex = [&](std::size_t f) {
-    const auto face = mesh.faces[f];
-    return *std::min_element(face.begin(), face.end());
-  };
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) ++start[first_vertex(f) + 1];
-  for (std::size_t v = 0; v < order.size(); ++v) start[v + 1] += start[v];
-  std::vector<Index> face_order(mesh.faces.size());
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    face_order[start[first_vertex(f)]++] = static_cast<Index>(f);
-  }
-  Faces sorted;
-  sorted.reserve(mesh.faces.size(), mesh.faces.corners().size());
-  for (const Index f : face_order) sorted.push_back(std::as_const(mesh.faces)[f]);
-  mesh.faces = std::move(sorted);
+  sort_faces(mesh.faces, order.size(), context);
   return order;
 }
 

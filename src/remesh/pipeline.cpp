@@ -57,7 +57,7 @@ Pipeline::Pipeline(const Mesh& input, const RemeshOptions& options, const Contex
 
 void Pipeline::clean_up(Mesh input) {
   stage_("clean", [&] {
-    result_.report.notes = describe(clean(input));
+    result_.report.notes = describe(clean(input, context_));
     frame_ = unit_frame(input);
     target_ = Target(options_, result_.report.input_vertices, frame_.scale);
     enter(frame_, input);
@@ -69,7 +69,7 @@ void Pipeline::clean_up(Mesh input) {
 void Pipeline::sharpen() {
   if (is_cloud_) return;
   stage_("noise", [&] {
-    const double side = target_.face_side(surface_area(surface_));
+    const double side = target_.face_side(surface_area(surface_, context_));
     is_sharpened_ = take_out_noise(surface_, options_, side, result_.report.notes, context_);
   });
   if (options_.lock_borders) locked_ = border_vertices(surface_, context_);
@@ -78,19 +78,21 @@ void Pipeline::sharpen() {
 void Pipeline::refine() {
   if (!is_cloud_) {
     stage_("subdivide", [&] {
-      const double area = surface_area(surface_);
+      const double area = surface_area(surface_, context_);
       if (!(area > 0)) throw Error("the input has no surface: all of its faces are degenerate");
       // Where faces vary in size, and nothing can be split later on, fine enough for the
       // smallest.
       const bool once = !nodes_are_vertices_ || !options_.guides.empty();
       const bool varied = once && !options_.sizing.is_uniform();
       const double length = target_.edge_length(area) / (varied ? options_.sizing.ratio : 1);
-      const EdgeLengths edges = edge_lengths(surface_);
+      const EdgeLengths edges = edge_lengths(surface_, context_);
       const double limit = std::min(length / 2, 2 * edges.mean);
       if (edges.max > limit) subdivide(surface_, limit, context_);
     });
   }
-  if (!is_cloud_) lay_guides(target_.edge_length(surface_area(surface_)));
+  if (!is_cloud_ && !options_.guides.empty()) {
+    lay_guides(target_.edge_length(surface_area(surface_, context_)));
+  }
   stage_("order", [&] { put_in_order(); });
 }
 
@@ -156,7 +158,10 @@ void Pipeline::size_faces() {
 }
 
 double Pipeline::surplus() const {
-  const bool harmless = lengths_.uniform() && options_.guides.empty() && options_.regularity < 1;
+  const bool guided =
+      std::ranges::any_of(options_.guides, [](const Guide& guide) { return guide.strength > 0; });
+  const bool harmless =
+      lengths_.uniform() && !guided && borders_.empty() && options_.regularity < 1;
   return harmless ? target_.surplus() : target_.tolerance();
 }
 
@@ -386,7 +391,7 @@ RemeshResult Pipeline::result() && {
 
 void Pipeline::drop_pieces() {
   if (is_cloud_ || options_.min_component == 0) return;
-  const double area = options_.min_component * target_.face_area(surface_area(surface_));
+  const double area = options_.min_component * target_.face_area(surface_area(surface_, context_));
   if (const std::size_t dropped = drop_small_pieces(surface_, area)) {
     result_.report.notes.push_back("left out " + std::to_string(dropped) +
                                    " pieces with room for fewer than " +

@@ -66,7 +66,7 @@ class Pipeline {
   std::vector<Index> put_in_order();
 
   /// Which share of faces too many may be taken away again: more than the count may be off by only
-  /// where that does no harm to sizes, guides, or the utmost regularity.
+  /// where that does no harm to sizes, guides, borders that stay, or the utmost regularity.
   double surplus() const;
   /// The middle of what will do, as a share of the count.
   double count_to_aim_at() const;
