@@ -38,8 +38,8 @@ Index walk_to_nearest(const Vec3& p, const Mesh& mesh, const VertexFaces& around
 }
 
 /// Straight ways of the nodes that have a vertex within reach on their side of the surface. It is
-/// looked for from the vertices with the nodes just before and after: near in a space-filling
-/// order, near in space.
+/// looked for from where the node before found its own, else from the vertices with the nodes just
+/// before and after: near in a space-filling order, near in space.
 Ways straight_ways(const Extraction& extraction, const VertexFaces& around, const Graph& graph,
                    const EdgeLength& reach, const Context& context) {
   const std::size_t n = graph.size();
