@@ -162,6 +162,23 @@ TEST_F(Models, LinesAreKept) {
   if (checked == 0) GTEST_SKIP() << "none of the models is there";
 }
 
+/// Also where faces that pass through each other are mended, who look at each other from afar.
+TEST_F(Models, AnyNumberOfThreadsGivesTheSame) {
+  int checked = 0;
+  for (const char* name : {"cow", "suzanne"}) {
+    if (!files_.contains(name)) continue;
+    ++checked;
+    const Mesh input = read_mesh(files_[name]);
+    RemeshOptions options;
+    options.face_count = wanted;
+    const Mesh one = remesh(input, options, Context(1)).mesh;
+    for (const int threads : {2, 3}) {
+      EXPECT_EQ(remesh(input, options, Context(threads)).mesh.positions, one.positions) << name;
+    }
+  }
+  if (checked == 0) GTEST_SKIP() << "none of the models is there";
+}
+
 TEST_F(Models, FewOrientationSingularities) {
   const std::map<std::string, std::size_t> most = {
       {"fandisk", 34}, {"3holes", 38}, {"bumpy-cube", 32}};

@@ -67,7 +67,7 @@ class LatticeRepair {
     swings_.set(2 * edge);
     swings_.set(2 * edge + 1);
   }
-  void touch(Index v) {
+  void mark_star(Index v) {
     changed_[v] = now_;
     lattice_.for_each_leaving(v, [&](Index h) {
       mark(h / 2);
@@ -76,13 +76,13 @@ class LatticeRepair {
   }
   void touch(std::span<const Index> vertices) {
     ++now_;
-    for (const Index v : vertices) touch(v);
+    for (const Index v : vertices) mark_star(v);
   }
   void touch_star(Index v) {
     changed_.resize(map_.vertices(), 0);
     ++now_;
-    touch(v);
-    lattice_.for_each_leaving(v, [&](Index h) { touch(map_.target(h)); });
+    mark_star(v);
+    lattice_.for_each_leaving(v, [&](Index h) { mark_star(map_.target(h)); });
   }
 
   Piece piece(Index h) const {

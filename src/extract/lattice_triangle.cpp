@@ -24,6 +24,31 @@ double flaw_of(double area) {
   return area < 0 ? turned * (1 - area) : area < 0.25 ? flat : 0;
 }
 
+/// Edges are short: most angles are among a few, by the cross product of two vectors, and by twice
+/// their scalar product.
+class AngleTable {
+ public:
+  /// `height`: that of the cell over its side.
+  explicit AngleTable(double height) {
+    for (int cross = -reach; cross <= reach; ++cross) {
+      for (int twice = -reach; twice <= reach; ++twice) {
+        angles_[place(cross, twice)] = std::atan2(cross * height, twice / 2.0);
+      }
+    }
+  }
+  static bool has(int cross, int twice) {
+    return std::abs(cross) <= reach && std::abs(twice) <= reach;
+  }
+  double at(int cross, int twice) const { return angles_[place(cross, twice)]; }
+
+ private:
+  static constexpr int reach = 6, width = 2 * reach + 1;
+  static std::size_t place(int cross, int twice) {
+    return static_cast<std::size_t>((cross + reach) * width + twice + reach);
+  }
+  std::array<double, width * width> angles_;
+};
+
 LatticePoint operator-(const LatticePoint& a, const LatticePoint& b) {
   return {a[0] - b[0], a[1] - b[1]};
 }
@@ -63,31 +88,13 @@ double LatticeMetric::angle(const LatticePoint& a, const LatticePoint& b) const 
 }
 
 double LatticeMetric::angle(const std::array<int, 2>& a, const std::array<int, 2>& b) const {
-  // Edges are short: most angles are among a few.
-  constexpr int reach = 6, width = 2 * reach + 1;
-  using Table = std::array<double, width * width>;
-  // The angles by the cross product, and by twice the scalar product.
-  static const auto table = [](int symmetry) {
-    Table angles;
-    const double height = symmetry == 4 ? 1 : std::sqrt(0.75);
-    for (int cross = -reach; cross <= reach; ++cross) {
-      for (int twice = -reach; twice <= reach; ++twice) {
-        angles[static_cast<std::size_t>((cross + reach) * width + twice + reach)] =
-            std::atan2(cross * height, twice / 2.0);
-      }
-    }
-    return angles;
-  };
-  static const Table four = table(4), six = table(6);
+  static const AngleTable four(1), six(std::sqrt(0.75));
   const int cross = a[0] * b[1] - a[1] * b[0];
   const int twice = 2 * (a[0] * b[0] + a[1] * b[1]) + (posy == 6 ? a[0] * b[1] + a[1] * b[0] : 0);
   // Opposite vectors may be either way around; it is the signs of zeros that tell.
   const bool is_straight = cross == 0 && twice < 0;
-  if (is_straight || std::abs(cross) > reach || std::abs(twice) > reach) {
-    return angle(point(a), point(b));
-  }
-  return (posy == 6 ? six
-                    : four)[static_cast<std::size_t>((cross + reach) * width + twice + reach)];
+  if (is_straight || !AngleTable::has(cross, twice)) return angle(point(a), point(b));
+  return (posy == 6 ? six : four).at(cross, twice);
 }
 
 LatticePoint LatticeTriangle::apex(int corner) const {

@@ -5,7 +5,6 @@
 #include <numbers>
 
 namespace meshgrain {
-
 namespace {
 
 constexpr double sharp = 40;  // degrees

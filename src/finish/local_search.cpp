@@ -56,7 +56,6 @@ LocalSearch::LocalSearch(Extraction& extraction, const VertexFaces& around, Plac
 }
 
 bool LocalSearch::improve(std::span<const Index> vertices, int sweeps, const Context& context) {
-  constexpr std::size_t grain = 8;
   const auto apart = batches(vertices);
   bool any = false;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
@@ -64,6 +63,8 @@ bool LocalSearch::improve(std::span<const Index> vertices, int sweeps, const Con
     std::atomic<bool> moved = false;
     for (const std::vector<Index>& batch : apart) {
       ++now_;
+      // Rivals look at each other wherever they are, so that then it is one after the other.
+      const std::size_t grain = rivals_.empty() ? 8 : batch.size();
       context.for_ranges(batch.size(), grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
           const Index v = batch[k];

@@ -162,7 +162,6 @@ Smoother::Smoother(Extraction& extraction, const Mesh& surface, const Graph& gra
   previous_.resize(mesh_.positions.size());
   for_vertices([&](std::size_t v) { previous_[v] = placement_.place(mesh_.positions[v], v); });
   mesh_.positions = previous_;
-  look_up_sizes();
 }
 
 template <typename Body>

@@ -42,6 +42,7 @@ EdgeLengths edge_lengths(const Mesh& mesh, const Context& context) {
         Lengths result;
         for (std::size_t f = begin; f < end; ++f) {
           const auto face = mesh.faces[f];
+          if (face.empty()) continue;
           Index last = face.back();
           for (const Index v : face) {
             const double length = (mesh.positions[v] - mesh.positions[last]).norm();
