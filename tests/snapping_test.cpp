@@ -88,9 +88,9 @@ TEST(Snapping, ExtrinsicFieldsFollowTheCreases) {
         snapping(mesh, OrientationEnergy::intrinsic, PositionEnergy::intrinsic, seed);
     const Snapping positions =
         snapping(mesh, OrientationEnergy::extrinsic, PositionEnergy::intrinsic, seed);
-    // Measured 3.8 and 14 to 31 degrees, 0.04 and 0.22 to 0.29 edge lengths.
+    // Measured 2.9 and 18 to 32 degrees, 0.02 and 0.23 to 0.29 edge lengths.
     EXPECT_LT(extrinsic.angle, 4);
-    EXPECT_GT(intrinsic.angle, 3 * extrinsic.angle);
+    EXPECT_GT(intrinsic.angle, 4 * extrinsic.angle);
     EXPECT_LT(extrinsic.offset, 0.05);
     // With the same orientations, so that positions alone make the difference.
     EXPECT_GT(positions.offset, 4 * extrinsic.offset);
