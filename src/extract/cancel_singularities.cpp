@@ -1,68 +1,55 @@
 #include "extract/cancel_singularities.h"
 
-#include <tbb/enumerable_thread_specific.h>
-
-#include <algorithm>
-#include <cstdint>
 #include <queue>
 #include <tuple>
 #include <vector>
 
-#include "extract/path_search.h"
 #include "extract/unit_carrier.h"
+#include "extract/unit_waves.h"
 
 namespace meshgrain {
 namespace {
 
-/// Takes the cheapest path of all, then the cheapest of those that are left, and so on.
+/// Takes the cheapest way of all, then the cheapest of those that are left, and so on.
 class Cancelling {
  public:
-  Cancelling(LatticeMesh& lattice, double cost, const Context& context)
+  /// `most`: what may be spent for each irregular vertex that goes.
+  Cancelling(LatticeMesh& lattice, double most, const Context& context)
       : lattice_(lattice),
+        most_(most),
         context_(context),
-        carrier_(lattice),
-        searches_([this, cost] { return PathSearch(carrier_, cost); }),
-        changed_(PathSearch::region(static_cast<Index>(lattice.map.halfedges())) + 1, 0) {}
+        carrier_(lattice, context),
+        waves_(carrier_, most_to_vanish * most) {}
 
   void run() {
     for (Index h = 0; h < lattice_.map.halfedges(); ++h) {
-      if (lattice_.stands_for_triangle(h) && is_singular(h)) starts_.push_back({.h = h});
+      if (lattice_.stands_for_triangle(h) && is_singular(h)) waves_.start(h);
     }
-    std::vector<Index> all(starts_.size());
-    for (Index k = 0; k < starts_.size(); ++k) {
-      all[k] = k;
-      queue_.push({0, k});
-    }
-    look(all);
-    // The cost that a start is queued with is a lower bound until its path has been looked for
-    // again.
+    find_meetings();
     while (!queue_.empty()) {
-      const Place place = queue_.top();
+      const UnitWaves::Meeting meeting = queue_.top().meeting;
       queue_.pop();
-      Start& start = starts_[place.start];
-      if (!is_singular(start.h)) continue;
-      if (is_old(start)) look_ahead(place.start);
-      if (start.path.steps.empty()) continue;
-      if (start.path.cost > place.cost + 1e-6) {
-        queue_.push({start.path.cost, place.start});
-        continue;
+      if (const auto ends = waves_.ends(meeting)) {
+        if (follow(meeting)) start_again(*ends);
+      } else {
+        waves_.meet_again(meeting);
       }
-      follow(start.path);
-      queue_.push({0, place.start});  // if anything is left
+      context_.check();
+      find_meetings();
     }
   }
 
  private:
-  struct Start {
-    Index h;
-    std::uint32_t found = 0;  // the time when the path was
-    PathSearch::Path path{};
-  };
+  static constexpr int most_to_vanish = 2;  // irregular vertices, at one end
+
   struct Place {
     double cost;
-    Index start;
+    UnitWaves::Meeting meeting;
     bool operator<(const Place& o) const {
-      return std::tie(cost, start) > std::tie(o.cost, o.start);
+      const auto key = [](const Place& p) {
+        return std::tuple(p.cost, p.meeting.here, p.meeting.there);
+      };
+      return key(*this) > key(o);
     }
   };
 
@@ -71,63 +58,71 @@ class Cancelling {
     return !triangle.is_cone() && !triangle.is_plane();
   }
 
-  /// Whether a search could find something else by now.
-  bool is_old(const Start& start) const {
-    return std::ranges::any_of(
-        start.path.regions, [&](std::uint32_t region) { return changed_[region] > start.found; });
+  /// A singularity costs two irregular vertices. At the end of the way another may vanish as well,
+  /// so that a longer one can be the cheaper one for each of them.
+  double cost_for_each(const UnitWaves::Meeting& meeting, const UnitWaves::Ends& ends) const {
+    const int gone = carrier_.loss(ends.from) + (ends.to != no_index ? carrier_.loss(ends.to) : 0);
+    return double{meeting.cost} / gone;
   }
 
-  void look(const std::vector<Index>& starts) {
-    context_.for_ranges(starts.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) {
-        Start& start = starts_[starts[k]];
-        start.path = searches_.local().from(start.h);
-        start.found = now_;
+  void start_again(const UnitWaves::Ends& ends) {
+    for (const Index h : {ends.from, ends.to}) {
+      if (h == no_index) continue;
+      waves_.take_back(h);
+      if (is_singular(h)) waves_.start(h);  // if anything is left
+    }
+  }
+
+  void find_meetings() {
+    std::vector<UnitWaves::Meeting> meetings;
+    waves_.grow(meetings);
+    for (const UnitWaves::Meeting& meeting : meetings) {
+      const auto ends = waves_.ends(meeting);
+      if (!ends) continue;
+      const double cost = cost_for_each(meeting, *ends);
+      if (cost < most_) queue_.push({cost, meeting});
+    }
+  }
+
+  /// Returns false if that cannot be done, and nothing has.
+  bool follow(const UnitWaves::Meeting& meeting) {
+    std::vector<UnitCarrier::State> steps = waves_.way(meeting.here);
+    if (steps.empty()) return false;
+    if (meeting.there != no_index) {
+      const std::vector<UnitCarrier::State> others = waves_.way(meeting.there);
+      if (others.empty()) return false;
+      steps.insert(steps.end(), others.begin() + 1, others.end());  // the first is the same edge
+    }
+    for (std::size_t k = 0; k < steps.size(); ++k) {
+      if (!carrier_.may_leave(steps[k])) {
+        while (k-- > 0) carry(carrier_.opposite(steps[k]));
+        return false;
       }
-    });
-  }
-
-  /// Together with the next ones, which will most likely be asked for as they are now.
-  void look_ahead(Index first) {
-    const auto threads = static_cast<std::size_t>(context_.threads());
-    std::vector<Index> old{first};
-    std::vector<Place> passed;
-    while (old.size() < threads && passed.size() < 4 * threads && !queue_.empty()) {
-      const Place place = queue_.top();
-      queue_.pop();
-      const Start& start = starts_[place.start];
-      if (!is_singular(start.h)) continue;
-      passed.push_back(place);
-      if (is_old(start)) old.push_back(place.start);
+      carry(steps[k]);
     }
-    for (const Place& place : passed) queue_.push(place);
-    look(old);
+    look_again(carrier_, steps);
+    look_again(waves_, steps);
+    return true;
   }
-
-  void follow(const PathSearch::Path& path) {
-    ++now_;
-    for (const UnitCarrier::State& step : path.steps) {
-      lattice_.set_jump(step.h, carrier_.left(step));
-      look_again(step.h);
-      look_again(PolygonMap::twin(step.h));
+  template <typename Observer>
+  void look_again(Observer& observer, const std::vector<UnitCarrier::State>& changed) const {
+    for (const UnitCarrier::State& step : changed) {
+      const Index h = carrier_.halfedge(step);
+      for (const Index side : {h, PolygonMap::twin(h)}) {
+        if (!lattice_.holes[side]) observer.look_again(side);
+      }
     }
   }
-  void look_again(Index h) {
-    carrier_.look_again(h);
-    if (lattice_.holes[h]) return;
-    for (int corner = 0; corner < 3; ++corner, h = lattice_.map.next(h)) {
-      changed_[PathSearch::region(h)] = now_;
-    }
+  void carry(const UnitCarrier::State& step) {
+    lattice_.set_jump(carrier_.halfedge(step), carrier_.left(step));
   }
 
   LatticeMesh& lattice_;
+  double most_;
   const Context& context_;
   UnitCarrier carrier_;
-  tbb::enumerable_thread_specific<PathSearch> searches_;
-  std::vector<Start> starts_;
+  UnitWaves waves_;
   std::priority_queue<Place> queue_;
-  std::uint32_t now_ = 0;               // the number of paths that were followed
-  std::vector<std::uint32_t> changed_;  // of each region: when it last did
 };
 
 }  // namespace

@@ -31,17 +31,21 @@ LatticePoint LatticeMesh::coordinates(const Vec3& d, Index v) const {
   return {a - y / 2, y};
 }
 
-double LatticeMesh::misfit(Index h, const std::array<int, 2>& t) const {
+LatticePoint LatticeMesh::real_jump(Index h) const {
   const Index i = map.origin(h), j = map.target(h);
   const Vec3 d = clusters.positions[j] - clusters.positions[i];
-  // As seen from both ends.
   const int turn = posy - jump(h).rotation;
   const LatticePoint here = coordinates(d, i), there = coordinates(d, j);
   const auto u = rotate_jump({1, 0}, turn, posy), v = rotate_jump({0, 1}, turn, posy);
   const double scale = 1 / (static_cast<double>(lengths_[i]) + lengths_[j]);
   const double x = here[0] + u[0] * there[0] + v[0] * there[1];
   const double y = here[1] + u[1] * there[0] + v[1] * there[1];
-  return metric().squared_length(LatticePoint{t[0] - x * scale, t[1] - y * scale});
+  return {x * scale, y * scale};
+}
+
+double LatticeMesh::misfit(Index h, const std::array<int, 2>& t) const {
+  const LatticePoint real = real_jump(h);
+  return metric().squared_length(LatticePoint{t[0] - real[0], t[1] - real[1]});
 }
 
 double LatticeMesh::total_angle(Index vertex) const {

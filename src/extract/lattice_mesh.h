@@ -36,6 +36,8 @@ class LatticeMesh : public JumpMap {
     return !map.removed(h) && !holes[h] && h < map.next(h) && h < map.prev(h);
   }
 
+  /// What the jump of h would be if it were the real distance of its ends, as both of them see it.
+  LatticePoint real_jump(Index h) const;
   /// How far (squared, in edge lengths) a jump of h would be from the real distance of its ends.
   double misfit(Index h, const std::array<int, 2>& t) const;
 

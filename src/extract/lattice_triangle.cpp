@@ -146,9 +146,12 @@ double LatticeTriangle::flaw() const {
 double LatticeTriangle::misfit() const {
   const Jump all = sum();
   if (all.rotation != 0) return flaw_of_cone();
-  const double size = flat_area(all.is_zero());
-  const double flaw = flaw_of(size);
-  return flaw == 0 ? std::max(0.0, size - 1) : flaw;
+  return misfit_of_plane(flat_area(all.is_zero()));
+}
+
+double LatticeTriangle::misfit_of_plane(double area) {
+  const double flaw = flaw_of(area);
+  return flaw == 0 ? std::max(0.0, area - 1) : flaw;
 }
 
 double LatticeTriangle::flaw_of_cone() const {

@@ -57,6 +57,7 @@ struct LatticeTriangle {
   /// The same, but a triangle of more than half a cell, which gains a vertex, is as far from what
   /// should be as a flat one, which loses one to its neighbours.
   double misfit() const;
+  static double misfit_of_plane(double area);
 
  private:
   double flaw_of_cone() const;

@@ -1,21 +1,34 @@
 #include "extract/unit_carrier.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace meshgrain {
 
-UnitCarrier::UnitCarrier(const LatticeMesh& lattice)
+UnitCarrier::UnitCarrier(const LatticeMesh& lattice, const Context& context)
     : lattice_(lattice),
       map_(lattice.map),
       posy_(lattice.posy),
       shift_(posy_ == 4 ? 2 : 3),
-      turns_(map_.halfedges()),
-      passable_(map_.halfedges(), 0),
-      passing_(2 * states()) {
-  for (Index h = 0; h < map_.halfedges(); ++h) {
-    turns_[h] = static_cast<std::uint8_t>(lattice_.jump(h).rotation);
-    if (lattice_.stands_for_triangle(h)) look_again(h);
+      sides_(map_.halfedges(), no_index) {
+  for (int unit = 0; unit < posy_; ++unit) {
+    vectors_[static_cast<std::size_t>(unit)] = rotate_jump({1, 0}, unit, posy_);
   }
+  for (Index h = 0; h < map_.halfedges(); ++h) {
+    const bool stands = lattice_.stands_for_triangle(h);
+    if (!stands && (map_.removed(h) || !lattice_.holes[h])) continue;
+    const auto first = static_cast<std::uint32_t>(halfedges_.size());
+    halfedges_.resize(first + 4, no_index);
+    Index g = h;
+    for (std::uint32_t k = 0; k < (stands ? 3 : 1); ++k, g = map_.next(g)) {
+      halfedges_[first + k] = g;
+      sides_[g] = first + k;
+    }
+  }
+  triangles_.resize(halfedges_.size() / 4);
+  context.for_ranges(triangles_.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) look_at(halfedges_[4 * t], triangles_[t]);
+  });
   weigh_lines();
 }
 
@@ -33,20 +46,45 @@ void UnitCarrier::weigh_lines() {
 }
 
 void UnitCarrier::look_again(Index h) {
-  if (lattice_.holes[h]) return;
-  const bool is_plane = lattice_.triangle(h).is_plane();
-  for (int corner = 0; corner < 3; ++corner, h = map_.next(h)) {
-    const std::size_t first = 2 * std::size_t{number({h, 0})};
-    for (std::size_t k = 0; k < 2 * static_cast<std::size_t>(posy_); ++k) {
-      passing_[first + k].store(0, std::memory_order_relaxed);
+  const std::uint32_t t = triangle(state(h, 0));
+  look_at(halfedges_[4 * t], triangles_[t]);
+}
+
+/// `h` is the first halfedge.
+void UnitCarrier::look_at(Index h, Triangle& triangle) const {
+  constexpr int most = 10000;  // else not simple
+  triangle = {};
+  if (lattice_.holes[h]) {
+    triangle.across[0] = sides_[PolygonMap::twin(h)];
+    triangle.turn[0] = static_cast<std::uint8_t>(lattice_.jump(h).rotation);
+    return;  // where nothing leaves
+  }
+  const LatticeTriangle lattice_triangle = lattice_.triangle(h);
+  triangle.is_plane = triangle.is_simple = lattice_triangle.is_plane();
+  for (std::size_t k = 0; k < 3; ++k, h = map_.next(h)) {
+    const Jump& jump = lattice_triangle.around[k];
+    triangle.across[k] = sides_[PolygonMap::twin(h)];
+    triangle.turn[k] = static_cast<std::uint8_t>(jump.rotation);
+    const LatticePoint real = lattice_.real_jump(h);
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      triangle.excess[k][axis] = static_cast<float>(jump.t[axis] - real[axis]);
+      triangle.jumps[k][axis] = static_cast<std::int16_t>(jump.t[axis]);
+      if (std::abs(jump.t[axis]) > most) triangle.is_simple = false;
     }
-    passable_[h] = is_plane;
+    if (lattice_.on_feature(h)) triangle.is_simple = false;
+  }
+  if (!triangle.is_simple) return;
+  const double area = lattice_triangle.area();
+  if (std::abs(area) > most) {
+    triangle.is_simple = false;
+  } else {
+    triangle.area = static_cast<std::int16_t>(area);
   }
 }
 
 Jump UnitCarrier::left(const State& out) const {
-  Jump jump = lattice_.jump(out.h);
-  const auto u = vector(out.unit);
+  Jump jump = lattice_.jump(halfedge(out));
+  const auto& u = vector(out.unit);
   jump.t = {jump.t[0] - u[0], jump.t[1] - u[1]};
   return jump;
 }
@@ -57,72 +95,95 @@ int UnitCarrier::loss(Index h) const {
 
 bool UnitCarrier::shortens(const State& out) const {
   const LatticeMetric metric = lattice_.metric();
-  const auto sum = lattice_.sum(out.h).t;
-  const auto u = vector(out.unit);
+  const auto sum = lattice_.sum(halfedge(out)).t;
+  const auto& u = vector(out.unit);
   return metric.squared_length(std::array<int, 2>{sum[0] - u[0], sum[1] - u[1]}) <
          metric.squared_length(sum);
 }
 
-std::optional<int> UnitCarrier::gain(const State& in) const {
-  if (passable_[in.h]) return std::nullopt;
-  if (lattice_.holes[in.h]) return 0;
-  const Jump sum = lattice_.sum(in.h);
+std::optional<int> UnitCarrier::gain_of_singular(const State& in) const {
+  const Index h = halfedge(in);
+  if (lattice_.holes[h]) return 0;
+  const Jump sum = lattice_.sum(h);
   if (sum.rotation != 0) return 0;
-  const auto u = vector(in.unit);
+  const auto& u = vector(in.unit);
   const LatticeMetric metric = lattice_.metric();
   const double after = metric.squared_length(std::array<int, 2>{sum.t[0] + u[0], sum.t[1] + u[1]});
   if (after >= metric.squared_length(sum.t)) return std::nullopt;
   return after == 0 ? 2 : 1;
 }
 
-/// Lines of features stay on their axis, and keep their vertices apart.
 bool UnitCarrier::may_leave(const State& out) const {
-  if (!lattice_.on_feature(out.h)) return true;
+  const Index h = halfedge(out);
+  if (!lattice_.on_feature(h)) return true;
   const Jump after = left(out);
-  return !after.is_zero() && !lattice_.leaves_axis(out.h, after.t);
+  return !after.is_zero() && !lattice_.leaves_axis(h, after.t);
+}
+
+/// `excess` gains in length, squared, what it loses of a unit.
+float UnitCarrier::crossing(const std::array<float, 2>& excess,
+                            const std::array<int, 2>& unit) const {
+  const auto u = static_cast<float>(unit[0]), v = static_cast<float>(unit[1]);
+  float product = excess[0] * u + excess[1] * v;
+  if (posy_ == 6) product += (excess[0] * v + excess[1] * u) / 2;
+  return std::max(1 - 2 * product, least_step);
+}
+
+float UnitCarrier::crossing(const State& out) const {
+  const float cost = crossing(at(out).excess[out.side % 4], vector(out.unit));
+  const Index h = halfedge(out);
+  if (!lattice_.on_feature(h)) return cost;
+  return may_leave(out) ? static_cast<float>(line_weight_[lattice_.lines[h / 2]]) * cost
+                        : forbidden;
 }
 
 /// `worse`: what becomes of the triangle.
 double UnitCarrier::step_cost(const State& out, double worse) const {
-  const Index h = out.h;
-  const double farther = lattice_.misfit(h, left(out).t) - lattice_.misfit(h, lattice_.jump(h).t);
-  const double weight = lattice_.on_feature(h) ? line_weight_[lattice_.lines[h / 2]] : 1;
-  return weight * std::max(farther, double{least_step}) + std::max(worse, 0.0);
+  return crossing(out) + std::max(worse, 0.0);
 }
 
 float UnitCarrier::leaving(const State& out) const {
-  if (!may_leave(out)) return forbidden;
-  LatticeTriangle triangle = lattice_.triangle(out.h);
+  LatticeTriangle triangle = lattice_.triangle(halfedge(out));
   const double before = triangle.misfit();
   triangle.around[0] = left(out);
   return static_cast<float>(step_cost(out, triangle.misfit() - before));
 }
 
 float UnitCarrier::ending(const State& in) const {
-  if (lattice_.holes[in.h]) return 0;
-  LatticeTriangle triangle = lattice_.triangle(in.h);
+  const Index h = halfedge(in);
+  if (lattice_.holes[h]) return 0;
+  LatticeTriangle triangle = lattice_.triangle(h);
   const double before = triangle.misfit();
   triangle.around[0] = entered(in);
   return static_cast<float>(std::max(0.0, triangle.misfit() - before));
 }
 
-float UnitCarrier::passing(const State& in, int side) const {
-  std::atomic<float>& stored =
-      passing_[2 * std::size_t{number(in)} + static_cast<std::size_t>(side)];
-  float cost = stored.load(std::memory_order_relaxed);
-  if (cost > 0) return cost;
-  State out = along(in);
-  if (side == 1) out = along(out);
-  cost = forbidden;
-  if (may_leave(out)) {
-    LatticeTriangle triangle = lattice_.triangle(in.h);
-    const double before = triangle.misfit();
-    triangle.around[0] = entered(in);
-    triangle.around[side == 0 ? 1 : 2] = left(out);
-    cost = static_cast<float>(step_cost(out, triangle.misfit() - before));
-  }
-  stored.store(cost, std::memory_order_relaxed);
-  return cost;
+std::array<float, 2> UnitCarrier::passing(const State& in) const {
+  const Triangle& triangle = at(in);
+  const State next = along(in), last = along(next);
+  if (!triangle.is_simple) return {passing_slowly(in, next, 1), passing_slowly(in, last, 2)};
+  const std::size_t n = next.side % 4, l = last.side % 4;
+  const std::array<int, 2>&u = vector(next.unit), &w = vector(last.unit);
+  // What a parallelogram with the third edge, the one that stays, says.
+  const auto across_edge = [&](std::size_t k, const std::array<int, 2>& v) {
+    return triangle.jumps[k][0] * v[1] - triangle.jumps[k][1] * v[0];
+  };
+  const double before = LatticeTriangle::misfit_of_plane(triangle.area);
+  const auto cost = [&](std::size_t k, const std::array<int, 2>& v, int area) {
+    const double worse = LatticeTriangle::misfit_of_plane(area) - before;
+    return crossing(triangle.excess[k], v) + static_cast<float>(std::max(worse, 0.0));
+  };
+  return {cost(n, u, triangle.area + across_edge(l, w)),
+          cost(l, w, triangle.area - across_edge(n, u))};
+}
+
+/// `out` is at a corner of the triangle, as seen from that of `in`.
+float UnitCarrier::passing_slowly(const State& in, const State& out, std::size_t corner) const {
+  LatticeTriangle triangle = lattice_.triangle(halfedge(in));
+  const double before = triangle.misfit();
+  triangle.around[0] = entered(in);
+  triangle.around[corner] = left(out);
+  return static_cast<float>(step_cost(out, triangle.misfit() - before));
 }
 
 }  // namespace meshgrain

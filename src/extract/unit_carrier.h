@@ -1,12 +1,15 @@
 #pragma once
 
-#include <atomic>
+#include <hwy/cache_control.h>
+
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <vector>
 
 #include "extract/lattice_mesh.h"
+#include "meshgrain/context.h"
 
 namespace meshgrain {
 
@@ -20,33 +23,45 @@ namespace meshgrain {
 /// Several threads may ask at once; none while the lattice changes.
 class UnitCarrier {
  public:
-  explicit UnitCarrier(const LatticeMesh& lattice);
+  UnitCarrier(const LatticeMesh& lattice, const Context& context);
 
-  /// A unit vector at the origin of a halfedge, in steps of rotation from the first axis there.
+  /// A unit vector at the origin of a halfedge, in steps of rotation from the first axis there. The
+  /// halfedges of a triangle are sides 4 n, 4 n + 1 and 4 n + 2, one outside is a side 4 n.
   struct State {
-    Index h;
+    std::uint32_t side;
     int unit;
   };
-  /// States have numbers, those of a halfedge one after another.
-  std::size_t halfedges() const { return map_.halfedges(); }
-  std::size_t states() const { return halfedges() << shift_; }
+  State state(Index h, int unit) const { return {sides_[h], unit}; }
+  Index halfedge(const State& s) const { return halfedges_[s.side]; }
+
+  /// States have numbers, those of a triangle near each other.
   std::uint32_t number(const State& s) const {
-    return (s.h << shift_) + static_cast<std::uint32_t>(s.unit);
+    return (s.side << shift_) + static_cast<std::uint32_t>(s.unit);
   }
   State state(std::uint32_t number) const {
     return {number >> shift_, static_cast<int>(number & ((1u << shift_) - 1))};
   }
+  void prefetch(const State& s) const { hwy::Prefetch(&at(s)); }
+  std::size_t states() const { return halfedges_.size() << shift_; }
+  static std::uint32_t triangle(const State& s) { return s.side / 4; }
+  std::size_t triangles() const { return triangles_.size(); }
 
   /// The same vector as seen from the origin of the next halfedge.
-  State along(const State& s) const { return {map_.next(s.h), rotated(s.unit, turns_[s.h])}; }
+  State along(const State& s) const {
+    const std::uint32_t k = s.side % 4;
+    return {k == 2 ? s.side - 2 : s.side + 1, rotated(s.unit, at(s).turn[k])};
+  }
   State back(const State& s) const {
-    const Index h = map_.prev(s.h);
-    return {h, rotated(s.unit, posy_ - turns_[h])};
+    const std::uint32_t k = s.side % 4, last = k == 0 ? 2 : k - 1;
+    return {s.side - k + last, rotated(s.unit, posy_ - at(s).turn[last])};
   }
   /// ... and from the other end of its edge, for the triangle there.
   State across(const State& s) const {
-    return {PolygonMap::twin(s.h), rotated(s.unit, turns_[s.h])};
+    const Triangle& triangle = at(s);
+    return {triangle.across[s.side % 4], rotated(s.unit, triangle.turn[s.side % 4])};
   }
+
+  State opposite(const State& s) const { return {s.side, rotated(s.unit, posy_ / 2)}; }
 
   /// What a unit can be: 0 to this less one.
   int units() const { return posy_; }
@@ -56,19 +71,30 @@ class UnitCarrier {
 
   /// How many irregular vertices vanish if what has entered by `in` stays there; nothing if it can
   /// only pass.
-  std::optional<int> gain(const State& in) const;
+  std::optional<int> gain(const State& in) const {
+    return at(in).is_plane ? std::nullopt : gain_of_singular(in);
+  }
 
-  /// The costs of leaving a triangle where nothing has entered, of passing from one edge to
-  /// another, and of staying. To leave costs at least a little, so that paths are no longer than
-  /// they must be, and is `forbidden` where a feature line would leave its axis.
-  float leaving(const State& out) const;
-  float passing(const State& in, int side) const;
-  float ending(const State& in) const;
+  /// To leave costs at least a little, so that paths are no longer than they must be, and is
+  /// `forbidden` where a feature line would leave its axis.
   static constexpr float least_step = 0.05f;
   static constexpr float forbidden = std::numeric_limits<float>::infinity();
 
+  /// What it costs to cross an edge, whatever becomes of the triangles beside it; this is the same
+  /// for the opposite unit from the other side.
+  float crossing(const State& out) const;
+  /// The costs of leaving a triangle where nothing has entered, and of staying.
+  float leaving(const State& out) const;
+  float ending(const State& in) const;
+
+  /// The costs of passing from one edge to the next two, along().
+  std::array<float, 2> passing(const State& in) const;
+
   /// Whether a unit that leaves takes something from the Burgers vector of its triangle.
   bool shortens(const State& out) const;
+
+  /// Whether feature lines stay on their axis, and keep their vertices apart.
+  bool may_leave(const State& out) const;
 
   /// The jump of an edge after a unit vector has gone out through it.
   Jump left(const State& out) const;
@@ -77,25 +103,41 @@ class UnitCarrier {
   void look_again(Index h);
 
  private:
+  /// What a search asks for, in one line of the cache.
+  struct alignas(64) Triangle {
+    std::array<std::uint32_t, 3> across{};         // the sides on the other side
+    std::array<std::array<float, 2>, 3> excess{};  // of the jumps over the real distances
+    std::array<std::array<std::int16_t, 2>, 3> jumps{};
+    std::array<std::uint8_t, 3> turn{};
+    bool is_plane = false;
+    bool is_simple = false;  // a plane off the feature lines
+    std::int16_t area = 0;   // of a plane
+  };
+
+  const Triangle& at(const State& s) const { return triangles_[triangle(s)]; }
   int rotated(int unit, int steps) const {
     const int sum = unit + steps;
     return sum < posy_ ? sum : sum - posy_;
   }
-  std::array<int, 2> vector(int unit) const { return rotate_jump({1, 0}, unit, posy_); }
-  Jump entered(const State& in) const { return left({in.h, rotated(in.unit, posy_ / 2)}); }
-  bool may_leave(const State& out) const;
+  const std::array<int, 2>& vector(int unit) const {
+    return vectors_[static_cast<std::size_t>(unit)];
+  }
+  Jump entered(const State& in) const { return left(opposite(in)); }
+  float crossing(const std::array<float, 2>& excess, const std::array<int, 2>& unit) const;
+  void look_at(Index h, Triangle& triangle) const;
+  std::optional<int> gain_of_singular(const State& in) const;
   double step_cost(const State& out, double worse) const;
+  float passing_slowly(const State& in, const State& out, std::size_t corner) const;
   void weigh_lines();
 
   const LatticeMesh& lattice_;
   const PolygonMap& map_;
   int posy_, shift_;
-  std::vector<std::uint8_t> turns_;     // of each halfedge: the rotation of its jump
-  std::vector<std::uint8_t> passable_;  // of each halfedge: a plane on its left ends no path
+  std::array<std::array<int, 2>, 6> vectors_{};
+  std::vector<Index> halfedges_;      // of each side
+  std::vector<std::uint32_t> sides_;  // of each halfedge
+  std::vector<Triangle> triangles_;
   std::vector<double> line_weight_;
-  // Of each state, for passing on to the next and to the previous edge; 0 if not known yet. Of all
-  // that a search asks for this is the most work, and others ask again.
-  mutable std::vector<std::atomic<float>> passing_;
 };
 
 }  // namespace meshgrain

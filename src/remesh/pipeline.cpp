@@ -464,12 +464,13 @@ PositionField Pipeline::solve_positions() {
 
 double Pipeline::cancelling_cost() const {
   if (options_.regularity >= 1) return std::numeric_limits<double>::infinity();
-  const double least = options_.faces == OutputFaces::quads           ? 3.1
-                       : options_.faces == OutputFaces::quad_dominant ? 5.2
-                                                                      : 4.8;
+  const double middle = options_.faces == OutputFaces::quads           ? 9.3
+                        : options_.faces == OutputFaces::quad_dominant ? 15.6
+                                                                       : 13.2;
+  constexpr double least = 0.28;  // of that
   // Sizes that vary need the dislocations where rows end.
   const double regularity = options_.regularity / (lengths_.uniform() ? 1 : 5);
-  return least * (1 + 2 * regularity / (1 - regularity));
+  return middle * (least + (1 - least) * regularity / (1 - regularity));
 }
 
 Extraction Pipeline::extract(const PositionField& positions) {

@@ -14,7 +14,7 @@ namespace meshgrain {
 /// gets any cheaper; else it may have to be looked at again.
 class BucketQueue {
  public:
-  explicit BucketQueue(float width) : width_(width) { clear(); }
+  explicit BucketQueue(float width) : width_(width) {}
 
   struct Entry {
     float cost;
@@ -22,11 +22,9 @@ class BucketQueue {
   };
 
   void clear() {
-    first_.fill(none);
-    nodes_.clear();
+    for (; lowest_ < count; ++lowest_) buckets_[lowest_].clear();
     later_.clear();
     start_ = 0;
-    lowest_ = count;
   }
 
   void push(float cost, std::uint32_t item) {
@@ -38,16 +36,14 @@ class BucketQueue {
     // Also what is not finite, once it is all that is left.
     const auto bucket = static_cast<std::size_t>(std::max(0.0f, place));
     lowest_ = std::min(lowest_, bucket);
-    nodes_.push_back({{cost, item}, first_[bucket]});
-    first_[bucket] = static_cast<std::uint32_t>(nodes_.size() - 1);
+    buckets_[bucket].push_back({cost, item});
   }
 
   /// Moves on to the next entry. Returns whether there is one.
   bool find() {
-    while (lowest_ < count && first_[lowest_] == none) ++lowest_;
+    while (lowest_ < count && buckets_[lowest_].empty()) ++lowest_;
     if (lowest_ < count) return true;
     if (later_.empty()) return false;
-    nodes_.clear();
     const auto nearest = std::ranges::min_element(later_, {}, &Entry::cost);
     start_ = nearest->cost;
     for (const Entry& entry : std::exchange(later_, {})) push(entry.cost, entry.item);
@@ -56,25 +52,24 @@ class BucketQueue {
   /// No entry that is left costs less than that, but for rounding.
   float least() const { return start_ + static_cast<float>(lowest_) * width_; }
   Entry pop() {
-    const Node& node = nodes_[first_[lowest_]];
-    first_[lowest_] = node.next;
-    return node.entry;
+    const Entry entry = buckets_[lowest_].back();
+    buckets_[lowest_].pop_back();
+    return entry;
+  }
+  /// What will most likely be popped `steps` later, to get it ready; or else something else.
+  std::uint32_t ahead(std::size_t steps) const {
+    const std::vector<Entry>& bucket = buckets_[lowest_];
+    return bucket[bucket.size() - 1 - std::min(steps, bucket.size() - 1)].item;
   }
 
  private:
-  struct Node {
-    Entry entry;
-    std::uint32_t next;
-  };
-  static constexpr std::uint32_t none = ~std::uint32_t{0};
   static constexpr std::size_t count = 512;
 
   float width_;
-  float start_ = 0;                         // the least cost of the first bucket
-  std::array<std::uint32_t, count> first_;  // of each bucket: the last node that was pushed
-  std::size_t lowest_ = count;              // no bucket below has entries
-  std::vector<Node> nodes_;
-  std::vector<Entry> later_;  // beyond the buckets
+  float start_ = 0;  // the least cost of the first bucket
+  std::array<std::vector<Entry>, count> buckets_;
+  std::size_t lowest_ = count;  // no bucket below has entries
+  std::vector<Entry> later_;    // beyond the buckets
 };
 
 }  // namespace meshgrain

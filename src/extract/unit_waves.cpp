@@ -1,0 +1,206 @@
+#include "extract/unit_waves.h"
+
+#include <hwy/cache_control.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace meshgrain {
+
+UnitWaves::UnitWaves(const UnitCarrier& carrier, double radius)
+    : carrier_(carrier),
+      radius_(static_cast<float>(radius)),
+      labels_(carrier.states()),
+      wave_(carrier.triangles(), no_index) {}
+
+void UnitWaves::start(Index h) {
+  const State first = carrier_.state(h, 0);
+  wave_[UnitCarrier::triangle(first)] = static_cast<std::uint32_t>(starts_.size());
+  starts_.push_back(h);
+  places_.emplace_back();
+  nearest_.emplace_back();
+  for (int unit = 0; unit < carrier_.units(); ++unit) {
+    State out = carrier_.state(h, unit);
+    for (int side = 0; side < 3; ++side, out = carrier_.along(out)) visit_from_start(out);
+  }
+}
+
+void UnitWaves::visit_from_start(const State& out) {
+  if (!carrier_.shortens(out)) return;
+  visit(carrier_.leaving(out), carrier_.across(out), nowhere, wave_[UnitCarrier::triangle(out)]);
+}
+
+void UnitWaves::visit(float cost, const State& to, Origin origin, std::uint32_t wave) {
+  if (!(cost < radius_)) return;
+  const std::uint32_t number = carrier_.number(to);
+  Label& label = labels_[number];
+  if (label.cost <= cost) return;
+  if (label.cost == never || label.wave() != wave) places_[wave].push_back(number);
+  label = Label::of(cost, wave, origin);
+  queue_.push(cost, number);
+}
+
+/// Whether no cheaper way between the same waves is known. Waves have few neighbours.
+bool UnitWaves::is_nearest(const Meeting& meeting) {
+  std::vector<Meeting>& nearest = nearest_[meeting.wave];
+  const auto same = std::ranges::find(nearest, meeting.other, &Meeting::other);
+  if (same == nearest.end()) {
+    nearest.push_back(meeting);
+    return true;
+  }
+  if (same->cost <= meeting.cost && ends(*same)) return false;
+  *same = meeting;
+  return true;
+}
+
+void UnitWaves::grow(std::vector<Meeting>& meetings) {
+  for (const std::uint32_t number : std::exchange(forgotten_, {})) come_back_to(number);
+  while (queue_.find()) {
+    get_ready();
+    const auto [cost, number] = queue_.pop();
+    const Label& label = labels_[number];
+    if (cost != label.cost) continue;  // another has come, or it was forgotten
+    const State in = carrier_.state(number);
+    const std::uint32_t wave = label.wave();
+    meet(in, meetings);
+    if (wave_[UnitCarrier::triangle(in)] == wave || carrier_.gain(in)) continue;
+    const auto costs = carrier_.passing(in);
+    State out = in;
+    for (std::size_t side = 0; side < 2; ++side) {
+      out = carrier_.along(out);
+      visit(cost + costs[side], carrier_.across(out), side == 0 ? previous_edge : edge_before,
+            wave);
+    }
+  }
+  queue_.clear();
+}
+
+/// Waves jump about in memory: fetches what will be looked at in a few steps.
+void UnitWaves::get_ready() const {
+  const std::uint32_t later = queue_.ahead(8);
+  hwy::Prefetch(&labels_[later]);
+  carrier_.prefetch(carrier_.state(later));
+  const State soon = carrier_.state(queue_.ahead(4));
+  const State next = carrier_.along(soon), last = carrier_.along(next);
+  for (const State& out : {carrier_.opposite(soon), next, last}) {
+    hwy::Prefetch(&labels_[carrier_.number(carrier_.across(out))]);
+  }
+}
+
+/// Looks for another wave that comes the other way through the same edge, or for an end.
+void UnitWaves::meet(const State& in, std::vector<Meeting>& meetings) {
+  const std::uint32_t here = carrier_.number(in);
+  const std::uint32_t there = carrier_.number(carrier_.across(carrier_.opposite(in)));
+  const Label &label = labels_[here], &other = labels_[there];
+  if (other.cost < never && other.wave() != label.wave()) {
+    // Both have paid for the edge.
+    const float cost = label.cost + other.cost - carrier_.crossing(carrier_.across(in));
+    const auto [older, newer] = std::minmax({label.wave(), other.wave()});
+    const Meeting meeting{here, there, label.cost, other.cost, cost, newer, older};
+    if (is_nearest(meeting)) meetings.push_back(meeting);
+  }
+  // Other Burgers vectors have a wave of their own.
+  if (carrier_.gain(in) != 0) return;
+  const float cost = label.cost + carrier_.ending(in);
+  const Meeting meeting{here, no_index, label.cost, 0, cost, label.wave(), no_index};
+  if (is_nearest(meeting)) meetings.push_back(meeting);
+}
+
+void UnitWaves::take_back(Index h) {
+  const std::uint32_t wave =
+      std::exchange(wave_[UnitCarrier::triangle(carrier_.state(h, 0))], no_index);
+  std::exchange(nearest_[wave], {});
+  for (const std::uint32_t number : std::exchange(places_[wave], {})) {
+    if (labels_[number].wave() == wave) forget(number);
+  }
+}
+
+void UnitWaves::look_again(Index h) {
+  for (int unit = 0; unit < carrier_.units(); ++unit) {
+    State in = carrier_.state(h, unit);
+    for (int side = 0; side < 3; ++side, in = carrier_.along(in)) {
+      const std::uint32_t number = carrier_.number(in);
+      if (labels_[number].cost < never) {
+        forget_beyond(number);
+        queue_.push(labels_[number].cost, number);
+      }
+      const std::uint32_t seed = carrier_.number(carrier_.across(in));
+      if (labels_[seed].cost < never && labels_[seed].origin() == nowhere) {
+        forget_beyond(seed);
+        forget(seed);
+      }
+    }
+  }
+}
+
+void UnitWaves::meet_again(const Meeting& meeting) {
+  if (meeting.other != no_index && places_[meeting.other].empty()) return;
+  for (const std::uint32_t number : places_[meeting.wave]) {
+    const Label& label = labels_[number];
+    if (label.cost < never && label.wave() == meeting.wave) queue_.push(label.cost, number);
+  }
+}
+
+void UnitWaves::forget(std::uint32_t number) {
+  if (labels_[number].cost == never) return;
+  labels_[number].cost = never;
+  forgotten_.push_back(number);
+}
+
+/// What has come by way of a state.
+void UnitWaves::forget_beyond(std::uint32_t number) {
+  std::vector<std::uint32_t> from{number};
+  while (!from.empty()) {
+    State out = carrier_.state(from.back());
+    const std::uint32_t wave = labels_[from.back()].wave();
+    from.pop_back();
+    for (const Origin origin : {previous_edge, edge_before}) {
+      out = carrier_.along(out);
+      const std::uint32_t next = carrier_.number(carrier_.across(out));
+      const Label& label = labels_[next];
+      if (label.cost == never || label.wave() != wave || label.origin() != origin) continue;
+      forget(next);
+      from.push_back(next);
+    }
+  }
+}
+
+/// By the waves that are beside it.
+void UnitWaves::come_back_to(std::uint32_t number) {
+  const State out = carrier_.across(carrier_.state(number));
+  const std::uint32_t triangle = UnitCarrier::triangle(out);
+  if (wave_[triangle] != no_index) visit_from_start(out);
+  State in = out;
+  for (std::size_t side = 0; side < 2; ++side) {
+    in = carrier_.back(in);
+    const Label& label = labels_[carrier_.number(in)];
+    if (label.cost == never || wave_[triangle] == label.wave() || carrier_.gain(in)) continue;
+    visit(label.cost + carrier_.passing(in)[side], carrier_.across(out),
+          side == 0 ? previous_edge : edge_before, label.wave());
+  }
+}
+
+std::optional<UnitWaves::Ends> UnitWaves::ends(const Meeting& meeting) const {
+  const Label& here = labels_[meeting.here];
+  if (here.cost != meeting.here_cost) return std::nullopt;
+  if (meeting.there == no_index) return Ends{starts_[here.wave()], no_index};
+  const Label& there = labels_[meeting.there];
+  if (there.cost != meeting.there_cost || there.wave() == here.wave()) return std::nullopt;
+  return Ends{starts_[here.wave()], starts_[there.wave()]};
+}
+
+std::vector<UnitCarrier::State> UnitWaves::way(std::uint32_t number) const {
+  std::vector<State> steps;
+  for (const std::uint32_t wave = labels_[number].wave();;) {
+    const Label& label = labels_[number];
+    const State out = carrier_.across(carrier_.state(number));
+    steps.push_back(out);
+    if (label.origin() == nowhere) return steps;
+    State in = carrier_.back(out);
+    if (label.origin() == edge_before) in = carrier_.back(in);
+    number = carrier_.number(in);
+    if (labels_[number].wave() != wave || !(labels_[number].cost < label.cost)) return {};
+  }
+}
+
+}  // namespace meshgrain

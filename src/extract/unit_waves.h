@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "extract/unit_carrier.h"
+#include "util/bucket_queue.h"
+
+namespace meshgrain {
+
+/// Where singular triangles could carry units of their Burgers vectors most cheaply: waves go out
+/// from all of them over the lattice mesh, and where two meet is a way for them to cancel each
+/// other. Each place belongs to the wave that comes first, so that together they take no longer
+/// than one wave over everything (Dijkstra's algorithm from many sources).
+class UnitWaves {
+ public:
+  using State = UnitCarrier::State;
+
+  /// `radius`: the cost at which waves end.
+  UnitWaves(const UnitCarrier& carrier, double radius);
+
+  /// A place where a unit of one wave could meet one of another, or end for good.
+  struct Meeting {
+    std::uint32_t here, there;  // states; `there` is no_index at an end
+    float here_cost, there_cost;
+    float cost;                 // of the whole way
+    std::uint32_t wave, other;  // `other` is no_index at an end
+  };
+
+  /// Sends a wave out from the triangle left of h, which is its number.
+  void start(Index h);
+
+  /// Lets waves go on as far as they come, and says where they meet: of each two, the places that
+  /// were cheaper than those before.
+  void grow(std::vector<Meeting>& meetings);
+
+  /// Takes back the wave that has started at h, so that the others can come there.
+  void take_back(Index h);
+
+  /// The triangle left of h has changed: waves must find their way through it again.
+  void look_again(Index h);
+
+  /// If both waves of a meeting are still there, though not at that place any more, grow() will say
+  /// where else they meet.
+  void meet_again(const Meeting& meeting);
+
+  /// Of a meeting that still is one: where the two waves, or one, started. Nothing if things have
+  /// changed.
+  struct Ends {
+    Index from, to;  // `to` is no_index where a single wave ends
+  };
+  std::optional<Ends> ends(const Meeting& meeting) const;
+
+  /// What leaves through which edges, from the start of a wave to a state, the last one first;
+  /// nothing where another wave, which itself went no farther, has come in between.
+  std::vector<State> way(std::uint32_t number) const;
+
+ private:
+  enum Origin : std::uint32_t { previous_edge, edge_before, nowhere };
+  static constexpr float never = std::numeric_limits<float>::infinity();
+
+  struct Label {
+    float cost = never;
+    std::uint32_t packed = 0;
+
+    static Label of(float cost, std::uint32_t wave, Origin origin) {
+      return {cost, 4 * wave + origin};
+    }
+    std::uint32_t wave() const { return packed / 4; }
+    Origin origin() const { return static_cast<Origin>(packed % 4); }
+  };
+
+  void get_ready() const;
+  void meet(const State& in, std::vector<Meeting>& meetings);
+  bool is_nearest(const Meeting& meeting);
+  void visit(float cost, const State& to, Origin origin, std::uint32_t wave);
+  void visit_from_start(const State& out);
+  void forget(std::uint32_t number);
+  void forget_beyond(std::uint32_t number);
+  void come_back_to(std::uint32_t number);
+
+  const UnitCarrier& carrier_;
+  float radius_;
+  std::vector<Label> labels_;                       // of each state
+  std::vector<std::uint32_t> wave_;                 // of each triangle: the one that starts there
+  std::vector<Index> starts_;                       // of each wave: a halfedge
+  std::vector<std::vector<std::uint32_t>> places_;  // of each wave: states that were its own once
+  std::vector<std::uint32_t> forgotten_;            // states that waves could come back to
+  std::vector<std::vector<Meeting>> nearest_;       // of each wave: with each older one
+  BucketQueue queue_{UnitCarrier::least_step};
+};
+
+}  // namespace meshgrain
