@@ -379,7 +379,7 @@ TEST_F(Cli, NotesSayWhatWasMended) {
 
 TEST_F(Cli, ReportTellsAll) {
   sample("torus", "in.obj");
-  run_well("in.obj -o out.obj -f 500 --report report.json --seed 7 -t 2");
+  run_well("in.obj -o out.obj -f 500 --report report.json --energies --seed 7 -t 2");
   const json report = json::parse(read("report.json"));
   EXPECT_EQ(report["version"], version());
   EXPECT_EQ(report["options"]["seed"], 7);
@@ -408,6 +408,15 @@ TEST_F(Cli, ReportTellsAll) {
                            "extraction", "smoothing", "write"}) {
     EXPECT_EQ(std::count(names.begin(), names.end(), name) > 0, true) << name;
   }
+}
+
+TEST_F(Cli, EnergiesAreMeasuredOnlyIfAskedFor) {
+  sample("torus", "in.obj");
+  run_well("in.obj -o out.obj -f 500 --report report.json");
+  const json report = json::parse(read("report.json"));
+  EXPECT_TRUE(report["energies"]["orientation"].empty());
+  EXPECT_TRUE(report["energies"]["position"].empty());
+  expect_refused("in.obj -o out.obj -f 500 --energies", 2, "--report");
 }
 
 /// What is written has the same numbers on the border as what was read.

@@ -281,9 +281,11 @@ void add_options(CLI::App& app, Arguments& a) {
             ->type_name("FILE"));
   files(app.add_option("--fields-out", a.fields_out, "write the fields to this file (PLY)")
             ->type_name("FILE"));
-  files(
-      app.add_option("--report", a.report, "write times, counts, memory and energies to this file")
-          ->type_name("FILE.json"));
+  files(app.add_option("--report", a.report, "write times, counts and memory to this file")
+            ->type_name("FILE.json"));
+  files(app.add_flag(
+      "--energies", a.energies,
+      "in the report, those of both fields after each sweep (as costly as the sweeps)"));
   files(app.add_option("-t,--threads", a.threads, "threads to use (all cores)")
             ->check(CLI::Range(1, 4096))
             ->type_name("N"));
@@ -377,7 +379,10 @@ void resolve(Arguments& a) {
     o.orientation_energy = orientation_energies.at(a.orientation_energy);
   }
   o.solver.multiresolution = !a.single_level;
-  o.solver.record_energy = !a.report.empty();
+  if (a.energies && a.report.empty()) {
+    throw UsageError("--energies are written into a report: add --report FILE.json");
+  }
+  o.solver.record_energy = a.energies;
   o.count_singularities = !a.report.empty();
 
   if (!a.levels.empty() && !a.fields_out.empty()) {
