@@ -118,11 +118,11 @@ Need needed(const Mesh& input, const RemeshOptions& options, const Context& cont
   return need;
 }
 
-/// "1.5 GiB".
-std::string amount(double bytes) {
+/// "1.5 GiB", rounded up or down.
+std::string amount(double bytes, double (*round)(double)) {
   constexpr double mib = 1 << 20, gib = 1 << 30;
-  return bytes < gib ? fmt::format("{:.0f} MiB", std::ceil(bytes / mib))
-                     : fmt::format("{:.1f} GiB", std::ceil(10 * bytes / gib) / 10);
+  return bytes < gib ? fmt::format("{:.0f} MiB", round(bytes / mib))
+                     : fmt::format("{:.1f} GiB", round(10 * bytes / gib) / 10);
 }
 
 }  // namespace
@@ -137,7 +137,7 @@ void check_memory(const Mesh& input, const RemeshOptions& options, const Context
                                                      : "ask for fewer faces";
   throw Error(
       fmt::format("this may take {} of memory, more than the limit of {}: {}, or allow more",
-                  amount(need.input + need.target), amount(limit), less));
+                  amount(need.input + need.target, std::ceil), amount(limit, std::floor), less));
 }
 
 }  // namespace meshgrain
