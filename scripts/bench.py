@@ -51,6 +51,16 @@ def machine(times):
     ]
 
 
+def was_busy(times):
+    """A note if the cores were not free: then arithmetic does not get faster with each of them."""
+    counter = "multiply-adds/s"
+    gain = times["multiply-add"][0][counter] / times["multiply-add"][1][counter]
+    if gain > 0.75 * cores():
+        return []
+    return [f"**Measured beside other work**, so that times are too long (all {cores()} cores multiplied"
+            f" {gain:.1f} times as fast as one).", ""]
+
+
 def whole_runs(runs):
     rows = [[r["model"], f"{r['vertices']:,}", f"{r['faces']:,}", f"{r['seconds']:.2f}",
              f"{r['vertices'] / r['seconds'] / 1e6:.2f}", f"{r['one_thread']:.2f}",
@@ -106,7 +116,7 @@ def main(work, output, models):
     lines = [
         "# Performance", "",
         "Made by `scripts/bench`, which measures the machine that it runs on.", "",
-        "## The machine", "", *machine(times),
+        "## The machine", "", *was_busy(times), *machine(times),
         "## Whole runs", "",
         "`meshgrain INPUT.ply -o result.ply -D`, from the start of the process to its end: binary PLY in",
         "and out, and a sixteenth as many faces as vertices. The best of three runs (one, where it takes",
