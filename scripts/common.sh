@@ -12,10 +12,11 @@ fail() {
   exit 1
 }
 
-# The build folder of a preset, as CMakePresets.json has it: `ci` differs from `release` in flags only.
+# The build folder of a preset, as CMakePresets.json has it: `ci` differs from `release` in flags only,
+# and `bench` has the benchmarks in place of the tests.
 build_folder() {
   case $1 in
-    ci) echo "$root/build/release" ;;
+    ci | bench) echo "$root/build/release" ;;
     *) echo "$root/build/$1" ;;
   esac
 }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "meshgrain/error.h"
+#include "remesh/memory.h"
 #include "remesh/pipeline.h"
 #include "symmetry/remesh_symmetric.h"
 
@@ -65,6 +66,7 @@ void make_mesh(Pipeline& pipeline) {
 
 RemeshResult remesh(Mesh input, const RemeshOptions& options, const Context& context) {
   check(options);
+  check_memory(input, options, context);
   if (options.symmetry.any()) return remesh_symmetric(std::move(input), options, context);
   Pipeline pipeline(input, options, context);
   prepare(pipeline, std::move(input));
@@ -84,6 +86,7 @@ std::vector<RemeshResult> remesh_levels(Mesh input, std::span<const std::size_t>
   options.edge_length = 0;
   options.face_count = *std::max_element(face_counts.begin(), face_counts.end());
   check(options);
+  check_memory(input, options, context);
   Pipeline pipeline(input, options, context);
   prepare(pipeline, std::move(input));
   const RemeshReport prepared = pipeline.report();

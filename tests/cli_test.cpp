@@ -379,7 +379,7 @@ TEST_F(Cli, NotesSayWhatWasMended) {
 
 TEST_F(Cli, ReportTellsAll) {
   sample("torus", "in.obj");
-  run_well("in.obj -o out.obj -f 500 --report report.json --seed 7 -t 2");
+  run_well("in.obj -o out.obj -f 500 --report report.json --energies --seed 7 -t 2");
   const json report = json::parse(read("report.json"));
   EXPECT_EQ(report["version"], version());
   EXPECT_EQ(report["options"]["seed"], 7);
@@ -407,6 +407,52 @@ TEST_F(Cli, ReportTellsAll) {
   for (const char* name : {"read", "graph", "hierarchy", "orientation field", "position field",
                            "extraction", "smoothing", "write"}) {
     EXPECT_EQ(std::count(names.begin(), names.end(), name) > 0, true) << name;
+  }
+}
+
+TEST_F(Cli, EnergiesAreMeasuredOnlyIfAskedFor) {
+  sample("torus", "in.obj");
+  run_well("in.obj -o out.obj -f 500 --report report.json");
+  const json report = json::parse(read("report.json"));
+  EXPECT_TRUE(report["energies"]["orientation"].empty());
+  EXPECT_TRUE(report["energies"]["position"].empty());
+  expect_refused("in.obj -o out.obj -f 500 --energies", 2, "--report");
+}
+
+TEST_F(Cli, MemoryLimitRefusesAtOnce) {
+  sample("torus", "in.obj");
+  const std::string plain = bytes("-f 500");
+  for (const char* limit : {"1G", "1.5G", "900M", "1000000K", "2000000000"}) {
+    EXPECT_EQ(bytes(std::string("-f 500 --memory-limit ") + limit), plain) << limit;
+  }
+  expect_refused("in.obj -o none.obj -f 50000000 --memory-limit 1G", 1, "limit of 1.0 GiB");
+  expect_refused("in.obj -o none.obj -f 500 --memory-limit 5M", 1, "limit of 5 MiB");
+  for (const char* wrong : {"0", "-1", "G", "1X", "nan", "many"}) {
+    expect_refused(std::string("in.obj -o none.obj --memory-limit ") + wrong, 2, "--memory-limit");
+  }
+}
+
+/// The estimate is an upper bound, but not by much.
+TEST_F(Cli, MemoryIsEstimatedFromAbove) {
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "sanitizers take memory of their own";
+#endif
+  sample("blob", "mesh.ply", 2);
+  Mesh cloud = sample_shape("blob", 2);
+  cloud.faces.clear();
+  write_mesh(folder_ / "cloud.ply", cloud);
+  for (const char* options : {"mesh.ply", "mesh.ply -f 10000", "mesh.ply -D -f 4000",
+                              "mesh.ply -p 6 -f 10000", "mesh.ply --adaptive 1 -f 8000",
+                              "mesh.ply --graph faces -f 8000", "cloud.ply", "cloud.ply -k 20"}) {
+    const std::string command = std::string(options) + " -o out.ply -t 2 --quiet";
+    run_well(command + " --report report.json");
+    const auto peak = json::parse(read("report.json"))["peak_memory_bytes"].get<double>();
+    const std::string text = run(command + " --memory-limit 1").err;
+    const std::size_t at = text.find("take ") + 5;
+    ASSERT_NE(text.find(" MiB", at), std::string::npos) << text;
+    const double ratio = std::stod(text.substr(at)) * (1 << 20) / peak;
+    EXPECT_GT(ratio, 1) << options;
+    EXPECT_LT(ratio, 1.65) << options;
   }
 }
 

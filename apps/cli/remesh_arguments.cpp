@@ -83,6 +83,23 @@ void parse_symmetry(const std::string& text, Symmetry& symmetry) {
   }
 }
 
+/// "500M", "2G" or a number of bytes.
+std::size_t parse_memory(const std::string& text) {
+  constexpr std::string_view units = "KMGT";
+  const std::size_t unit = text.empty() ? units.npos : units.find(text.back());
+  const bool has_unit = unit != units.npos;
+  double number = 0;
+  const bool is_number =
+      CLI::detail::lexical_cast(text.substr(0, text.size() - (has_unit ? 1 : 0)), number);
+  const double bytes = has_unit ? std::ldexp(number, 10 * static_cast<int>(unit + 1)) : number;
+  constexpr double most = 1e18;
+  if (!is_number || !(bytes >= 1 && bytes <= most)) {
+    throw CLI::ValidationError(
+        "--memory-limit", "\"" + text + "\" is no amount of memory, such as 500M, 2G or bytes");
+  }
+  return static_cast<std::size_t>(bytes);
+}
+
 /// "50000,5000,500" as numbers of faces.
 void parse_levels(const std::string& text, std::vector<std::size_t>& levels) {
   for (const std::string& word : CLI::detail::split(text, ',')) {
@@ -281,12 +298,19 @@ void add_options(CLI::App& app, Arguments& a) {
             ->type_name("FILE"));
   files(app.add_option("--fields-out", a.fields_out, "write the fields to this file (PLY)")
             ->type_name("FILE"));
-  files(
-      app.add_option("--report", a.report, "write times, counts, memory and energies to this file")
-          ->type_name("FILE.json"));
+  files(app.add_option("--report", a.report, "write times, counts and memory to this file")
+            ->type_name("FILE.json"));
+  files(app.add_flag(
+      "--energies", a.energies,
+      "in the report, those of both fields after each sweep (as costly as the sweeps)"));
   files(app.add_option("-t,--threads", a.threads, "threads to use (all cores)")
             ->check(CLI::Range(1, 4096))
             ->type_name("N"));
+  files(app.add_option_function<std::string>(
+               "--memory-limit",
+               [&o](const std::string& text) { o.memory_limit = parse_memory(text); },
+               "refuse at once what may take more memory than this: 500M, 2G or bytes (no limit)")
+            ->type_name("SIZE"));
   files(app.add_flag("--quiet", a.quiet, "print nothing but errors"));
   files(app.add_flag("-d,--deterministic", a.ignored,
                      "always so; accepted for Instant Meshes' scripts"));
@@ -377,7 +401,10 @@ void resolve(Arguments& a) {
     o.orientation_energy = orientation_energies.at(a.orientation_energy);
   }
   o.solver.multiresolution = !a.single_level;
-  o.solver.record_energy = !a.report.empty();
+  if (a.energies && a.report.empty()) {
+    throw UsageError("--energies are written into a report: add --report FILE.json");
+  }
+  o.solver.record_energy = a.energies;
   o.count_singularities = !a.report.empty();
 
   if (!a.levels.empty() && !a.fields_out.empty()) {

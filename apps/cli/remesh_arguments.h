@@ -14,6 +14,7 @@ struct Arguments {
   std::string input, output, report, features, fields, fields_out;
   int threads = 0;
   bool quiet = false;
+  bool energies = false;
   int posy = 4;
   bool posy_given = false, dominant = false, hexagons = false, single_level = false;
   bool ignored = false;

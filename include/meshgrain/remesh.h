@@ -63,6 +63,10 @@ struct RemeshOptions {
   /// points). Values are taken from the nearest node, so the surfaces need not be the same.
   const Fields* fields = nullptr;
 
+  /// Bytes that the program as a whole may have in memory, at its peak. What may take more is
+  /// refused at once, by an estimate that is rather too high than too low. 0: no limit.
+  std::size_t memory_limit = 0;
+
   bool count_singularities = true;  ///< For the report: takes a look at every face.
 };
 
@@ -88,7 +92,7 @@ struct RemeshResult {
 };
 
 /// From mesh (or point cloud) to mesh. Throws Error if the input has no surface, or if options
-/// contradict each other.
+/// contradict each other or its memory would exceed the limit.
 RemeshResult remesh(Mesh input, const RemeshOptions& options = {},
                     const Context& context = Context());
 

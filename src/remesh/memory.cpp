@@ -1,0 +1,143 @@
+#include "remesh/memory.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include "meshgrain/error.h"
+#include "meshgrain/surface.h"
+#include "remesh/target.h"
+#include "util/sum.h"
+
+namespace meshgrain {
+namespace {
+
+// In bytes, fitted to measured runs (Cli.MemoryIsEstimatedFromAbove holds them to it).
+constexpr double program = 11 << 20, thread = 1 << 20;
+constexpr double node_of_vertex = 330, node_of_face = 260;  // with its part of all levels
+constexpr double point = 130, neighbor = 32;                // of a cloud, each of its neighbours
+constexpr double input_vertex = 12, input_corner = 4;
+constexpr double written_corner = 65;
+constexpr double given_node = 250;  // of RemeshOptions::fields
+
+/// Into how many triangles subdivide() splits one with edges of these lengths: each edge is halved
+/// until it is short enough. All three at once make four triangles, and what is left when the
+/// shortest is done is a strip.
+double pieces(std::array<double, 3> edges, double limit) {
+  std::ranges::sort(edges, std::greater());
+  std::array<double, 3> parts;
+  for (std::size_t k = 0; k < 3; ++k) {
+    parts[k] = std::exp2(std::max(0.0, std::ceil(std::log2(edges[k] / limit))));
+  }
+  return parts[2] * (parts[0] + parts[1] - parts[2]);
+}
+
+/// How many triangles there are when none of their edges is longer than `limit`.
+double triangles_within(const Mesh& mesh, double limit, const Context& context) {
+  return sum_over_ranges(
+      mesh.faces.size(),
+      [&](std::size_t begin, std::size_t end) {
+        double sum = 0;
+        for (std::size_t f = begin; f < end; ++f) {
+          const auto face = mesh.faces[f];
+          const auto length = [&](std::size_t a, std::size_t b) {
+            return double{(mesh.positions[face[a]] - mesh.positions[face[b]]).norm()};
+          };
+          for (std::size_t k = 2; k < face.size(); ++k) {
+            sum += pieces({length(0, k - 1), length(k - 1, k), length(k, 0)}, limit);
+          }
+        }
+        return sum;
+      },
+      context);
+}
+
+/// By how many triangles the mesh grows that the fields live on.
+double added_triangles(const Mesh& input, double triangles, double area, const Target& target,
+                       const RemeshOptions& options, const Context& context) {
+  const double length = target.edge_length(area);
+  const bool varied = !options.sizing.is_uniform();
+  const bool once = options.graph.nodes == GraphNodes::faces || !options.guides.empty();
+  const double finest = varied && once ? length / options.sizing.ratio : length;
+  const double limit = std::min(finest / 2, 2 * edge_lengths(input, context).mean);
+  if (!(limit > 0)) return 0;
+  const double added = std::max(0.0, triangles_within(input, limit, context) - triangles);
+  // Later on only those are split where small faces are wanted.
+  constexpr double triangles_in_cell = 6;
+  return varied && !once ? added + triangles_in_cell * area / (length * length) : added;
+}
+
+double bytes_of_written_face(OutputFaces faces) {
+  if (faces == OutputFaces::triangles) return 3 * written_corner;
+  // The dual of two triangles, which are there first.
+  if (faces == OutputFaces::hexagons) return 12 * written_corner;
+  return 4 * written_corner;
+}
+
+/// Bytes at any target, and those that this one takes besides.
+struct Need {
+  double input = 0, target = 0;
+};
+
+Need needed_by_cloud(const Mesh& input, const RemeshOptions& options, const Target& target) {
+  const auto points = static_cast<double>(input.positions.size());
+  const double written = options.edge_length > 0 ? points : 1 / target.face_area(1);
+  const auto neighbors = static_cast<double>(options.graph.neighbors);
+  return {points * (point + neighbor * neighbors), written * bytes_of_written_face(options.faces)};
+}
+
+Need needed_by_mesh(const Mesh& input, const RemeshOptions& options, const Target& target,
+                    const Context& context) {
+  const double area = surface_area(input, context);
+  if (!(area > 0)) return {};
+  const auto vertices = static_cast<double>(input.positions.size());
+  const double triangles = static_cast<double>(input.faces.corners().size()) -
+                           2 * static_cast<double>(input.faces.size());
+  const double added = added_triangles(input, triangles, area, target, options, context);
+  const double written = area / target.face_area(area) * bytes_of_written_face(options.faces);
+  // Two triangles come with each vertex that is put between others.
+  if (options.graph.nodes == GraphNodes::vertices) {
+    return {vertices * node_of_vertex, added / 2 * node_of_vertex + written};
+  }
+  return {triangles * node_of_face, added * node_of_face + written};
+}
+
+Need needed(const Mesh& input, const RemeshOptions& options, const Context& context) {
+  const Target target(options, input.positions.size(), 1);
+  Need need = input.is_point_cloud() ? needed_by_cloud(input, options, target)
+                                     : needed_by_mesh(input, options, target, context);
+  need.input += program + thread * context.threads() +
+                static_cast<double>(input.positions.size()) * input_vertex +
+                static_cast<double>(input.faces.corners().size()) * input_corner;
+  if (options.fields != nullptr) {
+    need.input += given_node * static_cast<double>(options.fields->surface.positions.size());
+  }
+  return need;
+}
+
+/// "1.5 GiB", rounded up or down.
+std::string amount(double bytes, double (*round)(double)) {
+  constexpr double mib = 1 << 20, gib = 1 << 30;
+  return bytes < gib ? fmt::format("{:.0f} MiB", round(bytes / mib))
+                     : fmt::format("{:.1f} GiB", round(10 * bytes / gib) / 10);
+}
+
+}  // namespace
+
+void check_memory(const Mesh& input, const RemeshOptions& options, const Context& context) {
+  if (options.memory_limit == 0) return;
+  const Need need = needed(input, options, context);
+  const auto limit = static_cast<double>(options.memory_limit);
+  if (need.input + need.target <= limit) return;
+  const char* const less = need.input > limit        ? "take a coarser input"
+                           : options.edge_length > 0 ? "ask for longer edges"
+                                                     : "ask for fewer faces";
+  throw Error(
+      fmt::format("this may take {} of memory, more than the limit of {}: {}, or allow more",
+                  amount(need.input + need.target, std::ceil), amount(limit, std::floor), less));
+}
+
+}  // namespace meshgrain
