@@ -466,7 +466,7 @@ double Pipeline::cancelling_cost() const {
   if (options_.regularity >= 1) return std::numeric_limits<double>::infinity();
   const double middle = options_.faces == OutputFaces::quads           ? 9.3
                         : options_.faces == OutputFaces::quad_dominant ? 15.6
-                                                                       : 13.2;
+                                                                       : 14.0;
   constexpr double least = 0.28;  // of that
   // Sizes that vary need the dislocations where rows end.
   const double regularity = options_.regularity / (lengths_.uniform() ? 1 : 5);
