@@ -277,12 +277,22 @@ class LatticeRepair {
     return folded;
   }
 
-  /// Gives vertices with flawed triangles another place in the lattice.
+  /// How far the edges around a vertex are from their real length, squared.
+  double misfit(Index v) const {
+    double sum = 0;
+    lattice_.for_each_leaving(v, [&](Index h) { sum += lattice_.misfit(h, lattice_.jump(h).t); });
+    return sum;
+  }
+
+  /// Gives vertices with flawed triangles another place in the lattice: one without flaws may still
+  /// stretch edges over cells for which there is no room, which fill_in() would then crowd.
   bool shift_vertices() {
     bool any = false;
     for (Index v = 0; v < map_.vertices(); ++v) {
       if (map_.leaving(v) == no_index || is_sound(v)) continue;
-      double least = flaws(before_) - least_gain;
+      constexpr double against_stretching = 0.1;
+      const double enough = flaws(before_) - least_gain;
+      double least = enough + against_stretching * misfit(v);
       std::array<int, 2> best{0, 0};
       constexpr int reach = 2;
       for (int x = -reach; x <= reach; ++x) {
@@ -290,10 +300,10 @@ class LatticeRepair {
           if (lattice_.shift_leaves_axis(v, {x, y})) continue;
           lattice_.shift(v, {x, y});
           star(v, after_);
+          const double left = flaws(after_), cost = left + against_stretching * misfit(v);
           lattice_.shift(v, {-x, -y});
-          const double left = flaws(after_);
-          if (left >= least || !keeps_angles(before_, after_)) continue;
-          least = left;
+          if (left > enough || cost >= least || !keeps_angles(before_, after_)) continue;
+          least = cost;
           best = {x, y};
         }
       }

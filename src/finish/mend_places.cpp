@@ -55,6 +55,8 @@ class Mending {
 
   static constexpr std::size_t largest_to_slide = 80;  // faces of a place: it takes long
   static constexpr std::size_t most_crossings_to_slide = 25;
+  static constexpr std::size_t most_failed_slides = 16;  // in all, and one more for so many faces:
+  static constexpr std::size_t faces_a_failed_slide = 4000;
   // A mesh with more bad places is too coarse for its surface: no need to try for minutes.
   static constexpr std::size_t most_tried = 50;
   static constexpr std::size_t tries = 6;              // that a face takes part in without success
@@ -169,7 +171,8 @@ class Mending {
 
   bool part(const Place& place) {
     const bool small =
-        place.faces.size() <= largest_to_slide && place.crossings <= most_crossings_to_slide;
+        place.faces.size() <= largest_to_slide && place.crossings <= most_crossings_to_slide &&
+        failed_slides_ < most_failed_slides + mesh_.faces.size() / faces_a_failed_slide;
     if (small) {
       if (slide(place)) return true;
       restore(place);
@@ -228,7 +231,9 @@ class Mending {
     for (const Index v : place.vertices) search_.touch(v);
     constexpr int sweeps = 5;
     search_.improve(place.vertices, sweeps, context_);
-    return is_mended(place);
+    const bool mended = is_mended(place);
+    if (!mended) ++failed_slides_;
+    return mended;
   }
 
   /// Lets the vertices of bad faces leave their feature lines, and move over the surface.
@@ -280,6 +285,7 @@ class Mending {
   LocalSearch& search_;
   bool corners_stay_;
   Demands demands_ = ever_less[0];
+  std::size_t failed_slides_ = 0;
   const Context& context_;
 };
 
