@@ -1,10 +1,14 @@
 #include "extract/disk_clusters.h"
 
 #include <algorithm>
+#include <atomic>
+#include <bit>
+#include <limits>
 #include <numeric>
 #include <span>
 
 #include "mesh/vertex_faces.h"
+#include "util/collect.h"
 
 namespace meshgrain {
 namespace {
@@ -59,13 +63,16 @@ bool is_inside(const Mesh& surface, std::span<const Index> around, Index v,
 
 class DiskSearch {
  public:
-  DiskSearch(const Mesh& surface, const Graph& graph, int posy,
-             std::span<const std::uint8_t> rotations, std::span<const std::uint8_t> is_free)
+  DiskSearch(const Mesh& surface, const VertexFaces& around, const Graph& graph, int posy,
+             std::span<const std::uint8_t> rotations, std::span<const std::uint8_t> is_free,
+             const Context& context)
       : surface_(surface),
+        around_(around),
         graph_(graph),
         posy_(posy),
         rotations_(rotations),
         is_free_(is_free),
+        context_(context),
         parent_(graph.size()),
         rotation_(graph.size(), 0),
         is_bad_(graph.size(), 0) {
@@ -74,7 +81,7 @@ class DiskSearch {
 
   DiskClusters run() {
     unite();
-    reject_contradictions();
+    point_at_roots();
     reject_other_than_disks();
     std::vector<std::array<Index, 3>> triangles;
     do {
@@ -85,7 +92,29 @@ class DiskSearch {
   }
 
  private:
+  /// An edge between free vertices, the lower one first.
+  struct Edge {
+    Index from, to;
+    std::uint8_t rotation;  // of its jump, or not_zero
+  };
+
   int turned(int rotation) const { return rotation < posy_ ? rotation : rotation - posy_; }
+
+  template <typename Body>
+  void for_vertices(const Body& body) const {
+    context_.for_ranges(graph_.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      for (auto i = static_cast<Index>(begin); i < end; ++i) body(i);
+    });
+  }
+
+  template <typename Body>
+  void for_each_edge(Index i, const Body& body) const {
+    if (!is_free_[i]) return;
+    for (Index e = graph_.offsets[i]; e < graph_.offsets[i + 1]; ++e) {
+      const Index j = graph_.neighbors[e];
+      if (j > i && is_free_[j]) body(Edge{i, j, rotations_[e]});
+    }
+  }
 
   /// The root of i; `rotation_` is from there then.
   Index find(Index i) {
@@ -106,80 +135,101 @@ class DiskSearch {
     return root;
   }
 
-  template <typename Body>
-  void for_each_zero_edge(const Body& body) {
-    for (Index i = 0; i < graph_.size(); ++i) {
-      if (!is_free_[i]) continue;
-      for (Index e = graph_.offsets[i]; e < graph_.offsets[i + 1]; ++e) {
-        const Index j = graph_.neighbors[e];
-        if (j > i && is_free_[j]) body(i, j, rotations_[e]);
+  /// First each range of vertices by itself, then what is left between ranges.
+  void unite() {
+    const auto within_ranges = [&](std::size_t begin, std::size_t end, std::vector<Edge>& left) {
+      for (auto i = static_cast<Index>(begin); i < end; ++i) {
+        for_each_edge(i, [&](const Edge& edge) {
+          if (edge.rotation == not_zero) return;
+          if (edge.to < end) {
+            unite(edge);
+          } else {
+            left.push_back(edge);
+          }
+        });
       }
-    }
+    };
+    for (const Edge& edge : collect<Edge>(graph_.size(), within_ranges, context_)) unite(edge);
   }
 
   /// The lower one is the root, so that clusters do not depend on the order of the edges.
-  void unite() {
-    for_each_zero_edge([&](Index i, Index j, std::uint8_t rotation) {
-      if (rotation == not_zero) return;
-      const Index a = find(i), b = find(j);
-      if (a == b) return;
-      const int between = turned(turned(rotation_[i] + rotation) + posy_ - rotation_[j]);
-      if (a < b) {
-        parent_[b] = a;
-        rotation_[b] = static_cast<std::uint8_t>(between);
-      } else {
-        parent_[a] = b;
-        rotation_[a] = static_cast<std::uint8_t>(turned(posy_ - between));
-      }
-    });
-    for (Index i = 0; i < graph_.size(); ++i) find(i);  // from here on roots are one step away
+  void unite(const Edge& edge) {
+    const Index a = find(edge.from), b = find(edge.to);
+    if (a == b) return;
+    const int between =
+        turned(turned(rotation_[edge.from] + edge.rotation) + posy_ - rotation_[edge.to]);
+    if (a < b) {
+      parent_[b] = a;
+      rotation_[b] = static_cast<std::uint8_t>(between);
+    } else {
+      parent_[a] = b;
+      rotation_[a] = static_cast<std::uint8_t>(turned(posy_ - between));
+    }
   }
 
-  /// Clusters with other jumps inside, or around a singularity of the orientation field.
-  void reject_contradictions() {
-    for_each_zero_edge([&](Index i, Index j, std::uint8_t rotation) {
-      if (parent_[i] != parent_[j]) return;
-      if (rotation == not_zero || turned(rotation_[i] + rotation) != rotation_[j]) {
-        is_bad_[parent_[i]] = 1;
-      }
+  /// From here on roots are one step away.
+  void point_at_roots() {
+    std::vector<Index> roots(graph_.size());
+    std::vector<std::uint8_t> rotations(graph_.size());
+    for_vertices([&](Index i) {
+      int whole = 0;
+      Index root = i;
+      for (; parent_[root] != root; root = parent_[root]) whole = turned(whole + rotation_[root]);
+      roots[i] = root;
+      rotations[i] = static_cast<std::uint8_t>(whole);
     });
+    parent_.swap(roots);
+    rotation_.swap(rotations);
   }
 
-  /// A connected part of a surface, and not all of it, is a disk if its Euler number is 1.
+  void reject(Index root) { std::atomic_ref(is_bad_[root]).store(1, std::memory_order_relaxed); }
+
+  /// Clusters with other jumps inside, or around a singularity of the orientation field. And those
+  /// that are no disks: a connected part of a surface, and not all of it, is one if its Euler
+  /// number is 1.
   void reject_other_than_disks() {
     std::vector<int> euler(graph_.size(), 0);
-    for (Index i = 0; i < graph_.size(); ++i) ++euler[parent_[i]];
-    for_each_zero_edge([&](Index i, Index j, std::uint8_t) {
-      if (parent_[i] == parent_[j]) --euler[parent_[i]];
+    for_vertices([&](Index i) {
+      const Index root = parent_[i];
+      int own = 1;
+      for_each_edge(i, [&](const Edge& edge) {
+        if (parent_[edge.to] != root) return;
+        --own;
+        const bool fits =
+            edge.rotation != not_zero && turned(rotation_[i] + edge.rotation) == rotation_[edge.to];
+        if (!fits) reject(root);
+      });
+      for (const Index f : around_[i]) {
+        const auto face = surface_.faces[f];
+        own += std::ranges::all_of(face, [&](Index v) { return v >= i && parent_[v] == root; });
+      }
+      if (own != 0) std::atomic_ref(euler[root]).fetch_add(own, std::memory_order_relaxed);
     });
-    for (std::size_t f = 0; f < surface_.faces.size(); ++f) {
-      const auto face = surface_.faces[f];
-      const Index root = parent_[face[0]];
-      if (parent_[face[1]] == root && parent_[face[2]] == root) ++euler[root];
-    }
-    for (Index i = 0; i < graph_.size(); ++i) {
-      if (parent_[i] == i && euler[i] != 1) is_bad_[i] = 1;
-    }
+    for_vertices([&](Index i) {
+      if (parent_[i] == i && euler[i] != 1) reject(i);
+    });
   }
 
   /// The vertices of rejected clusters are alone again.
   void leave_rejected() {
-    for (Index i = static_cast<Index>(graph_.size()); i-- > 0;) {  // roots, which are lower, last
-      if (!is_bad_[parent_[i]]) continue;
+    for_vertices([&](Index i) {
+      if (!is_bad_[parent_[i]]) return;
       parent_[i] = i;
       rotation_[i] = 0;
-    }
+    });
     std::ranges::fill(is_bad_, 0);
   }
 
   std::vector<std::array<Index, 3>> between_clusters() const {
-    std::vector<std::array<Index, 3>> triangles;
-    for (std::size_t f = 0; f < surface_.faces.size(); ++f) {
-      const auto face = surface_.faces[f];
-      const Index a = parent_[face[0]], b = parent_[face[1]], c = parent_[face[2]];
-      if (a != b && b != c && c != a) triangles.push_back({face[0], face[1], face[2]});
-    }
-    return triangles;
+    using Triangle = std::array<Index, 3>;
+    const auto look = [&](std::size_t begin, std::size_t end, std::vector<Triangle>& out) {
+      for (std::size_t f = begin; f < end; ++f) {
+        const auto face = surface_.faces[f];
+        const Index a = parent_[face[0]], b = parent_[face[1]], c = parent_[face[2]];
+        if (a != b && b != c && c != a) out.push_back({face[0], face[1], face[2]});
+      }
+    };
+    return collect<Triangle>(surface_.faces.size(), look, context_);
   }
 
   /// Clusters around which the others would not be a simple loop. Returns whether there are any.
@@ -195,22 +245,22 @@ class DiskSearch {
         ends[--offsets[parent_[triangle[k]]]] = parent_[triangle[(k + 1) % 3]];
       }
     }
-    bool any = false;
-    const auto reject = [&](Index root) {
+    std::atomic<bool> any = false;
+    const auto reject_cluster = [&](Index root) {
       if (!has_members(root)) return;
-      is_bad_[root] = 1;
+      reject(root);
       any = true;
     };
-    for (Index i = 0; i < graph_.size(); ++i) {
+    for_vertices([&](Index i) {
       const std::span<Index> loop{ends.data() + offsets[i], offsets[i + 1] - offsets[i]};
-      if (parent_[i] == i && loop.size() < 3) reject(i);
+      if (parent_[i] == i && loop.size() < 3) reject_cluster(i);
       std::ranges::sort(loop);
       for (std::size_t k = 1; k < loop.size(); ++k) {
         if (loop[k] != loop[k - 1]) continue;
-        reject(i);
-        reject(loop[k]);
+        reject_cluster(i);
+        reject_cluster(loop[k]);
       }
-    }
+    });
     return any;
   }
 
@@ -221,33 +271,43 @@ class DiskSearch {
   }
 
   const Mesh& surface_;
+  const VertexFaces& around_;
   const Graph& graph_;
   int posy_;
   std::span<const std::uint8_t> rotations_, is_free_;
+  const Context& context_;
   std::vector<Index> parent_;
   std::vector<std::uint8_t> rotation_;  // of each vertex: from its parent's frame to its own
   std::vector<std::uint8_t> is_bad_;    // of each root
 };
 
-/// Roots become the members that are nearest to the lattice point.
-void put_roots_in_the_middle(DiskClusters& disks, const Graph& graph,
-                             const PositionField& position) {
-  std::vector<Index> middle(graph.size());  // of each root
-  std::iota(middle.begin(), middle.end(), Index{0});
-  const auto distance = [&](Index i) {
-    return (position.points[i] - graph.positions[i]).squaredNorm();
+/// Roots become the members that are nearest to the lattice point, the lowest of the nearest.
+void put_roots_in_the_middle(DiskClusters& disks, const Graph& graph, const PositionField& position,
+                             const Context& context) {
+  const auto for_vertices = [&](const auto& body) {
+    context.for_ranges(graph.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      for (auto i = static_cast<Index>(begin); i < end; ++i) body(i);
+    });
   };
-  for (Index i = 0; i < graph.size(); ++i) {
-    Index& best = middle[disks.root[i]];
-    if (distance(i) < distance(best)) best = i;
-  }
+  // Of each root, the nearest: the bits of its distance, which are in order like the distances
+  // themselves, and its index.
+  std::vector<std::uint64_t> middle(graph.size(), std::numeric_limits<std::uint64_t>::max());
+  for_vertices([&](Index i) {
+    const float distance = (position.points[i] - graph.positions[i]).squaredNorm();
+    const std::uint64_t own = std::uint64_t{std::bit_cast<std::uint32_t>(distance)} << 32 | i;
+    const std::atomic_ref best(middle[disks.root[i]]);
+    std::uint64_t least = best.load(std::memory_order_relaxed);
+    while (own < least && !best.compare_exchange_weak(least, own, std::memory_order_relaxed)) {
+    }
+  });
   const std::vector<std::uint8_t> from_old = disks.rotation;
-  for (Index i = 0; i < graph.size(); ++i) {
+  for_vertices([&](Index i) {
     Index& root = disks.root[i];
-    const int turn = from_old[i] + disks.posy - from_old[middle[root]];
+    const auto to = static_cast<Index>(middle[root]);  // the lower half
+    const int turn = from_old[i] + disks.posy - from_old[to];
     disks.rotation[i] = static_cast<std::uint8_t>(turn % disks.posy);
-    root = middle[root];
-  }
+    root = to;
+  });
 }
 
 }  // namespace
@@ -270,8 +330,9 @@ DiskClusters find_disk_clusters(const Mesh& surface, const Graph& graph,
   });
   const std::vector<std::uint8_t> rotations =
       zero_jumps(graph, orientation, position, energy, is_free, context);
-  DiskClusters disks = DiskSearch(surface, graph, position.posy, rotations, is_free).run();
-  put_roots_in_the_middle(disks, graph, position);
+  DiskClusters disks =
+      DiskSearch(surface, around, graph, position.posy, rotations, is_free, context).run();
+  put_roots_in_the_middle(disks, graph, position, context);
   return disks;
 }
 

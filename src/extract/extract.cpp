@@ -163,9 +163,9 @@ Extraction extract_from_mesh(const Graph& graph, const OrientationField& orienta
                                           options.energy, context);
   LatticeMesh lattice(std::move(collapsed.lattice), std::move(collapsed.clusters), collapsed.roots,
                       graph, orientation, position);
-  repair_lattice(lattice);
+  repair_lattice(lattice, context);
   cancel_position_singularities(lattice, options.cancelling_cost, context);
-  repair_lattice(lattice);
+  repair_lattice(lattice, context);
   lattice.clusters.hold = std::move(lattice.hold);
   FaceRepair repair(lattice.map, lattice.clusters, position.posy, std::move(lattice.holes),
                     std::move(lattice.lines));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -11,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "util/collect.h"
 #include "util/edge_of.h"
 #include "util/index_marks.h"
 
@@ -34,9 +36,12 @@ double flaws(std::span<const Piece> pieces) {
 
 class LatticeRepair {
  public:
-  explicit LatticeRepair(LatticeMesh& lattice)
-      : lattice_(lattice), map_(lattice.map), changed_(map_.vertices(), 0) {
-    for (Index e = 0; e < map_.halfedges() / 2; ++e) mark(e);
+  LatticeRepair(LatticeMesh& lattice, const Context& context)
+      : lattice_(lattice),
+        map_(lattice.map),
+        changed_(map_.vertices(), 0),
+        sound_(map_.vertices(), 1) {
+    mark_all(context);
   }
 
   void run() {
@@ -57,6 +62,36 @@ class LatticeRepair {
   std::array<Index, 4> corners(Index h) const {
     const Index t = PolygonMap::twin(h);
     return {map_.origin(h), map_.origin(t), map_.origin(map_.prev(h)), map_.origin(map_.prev(t))};
+  }
+
+  /// What the first round must look at, found in parallel: most of a lattice is whole.
+  void mark_all(const Context& context) {
+    const auto edges = static_cast<Index>(map_.halfedges() / 2);
+    const auto mark_if = [&](IndexMarks& marks, std::size_t count, const auto& condition) {
+      const auto look = [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+        for (auto i = static_cast<Index>(begin); i < end; ++i) {
+          if (condition(i)) out.push_back(i);
+        }
+      };
+      for (const Index i : collect<Index>(count, look, context)) marks.set(i);
+    };
+    mark_if(zero_edges_, edges, [&](Index e) { return lattice_.jumps[e].is_zero(); });
+    mark_if(flips_, edges, [&](Index e) {
+      const Index h = 2 * e, t = h + 1;
+      if (map_.removed(h) || lattice_.holes[h] || lattice_.holes[t]) return false;
+      return std::max(flip_gain(h), flip_gain(t)) >= least_gain;
+    });
+    mark_if(swings_, map_.halfedges(), [&](Index h) {
+      return !map_.removed(h) && !lattice_.holes[h] && lattice_.triangle(h).is_cone();
+    });
+    context.for_ranges(map_.halfedges(), 4096, [&](std::size_t begin, std::size_t end) {
+      for (auto h = static_cast<Index>(begin); h < end; ++h) {
+        if (!lattice_.stands_for_triangle(h) || lattice_.triangle(h).flaw() == 0) continue;
+        for (const Index v : piece(h).corners) {
+          std::atomic_ref(sound_[v]).store(0, std::memory_order_relaxed);
+        }
+      }
+    });
   }
 
   /// For every kind of change: what was refused before would be refused again, unless something has
@@ -490,8 +525,8 @@ class LatticeRepair {
 
 }  // namespace
 
-void repair_lattice(LatticeMesh& lattice) {
-  LatticeRepair(lattice).run();
+void repair_lattice(LatticeMesh& lattice, const Context& context) {
+  LatticeRepair(lattice, context).run();
 }
 
 }  // namespace meshgrain

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <numbers>
 #include <utility>
 
@@ -21,15 +20,21 @@ namespace {
 
 constexpr std::size_t grain = 1024;
 
-/// Of the regular polygon with n corners at a distance of 1 from zero: the turn from one corner to
-/// the next, and the length of the sides.
+/// The regular polygon with n corners at a distance of 1 from zero: the directions of the corners,
+/// the first along x, and the length of the sides.
 struct RegularPolygon {
-  std::complex<float> step;
-  float side;
+  std::vector<std::array<float, 2>> corners;
+  float side = 0;
 
   static RegularPolygon of(std::size_t n) {
-    const float half_step = std::numbers::pi_v<float> / static_cast<float>(n);
-    return {std::polar(1.0f, 2 * half_step), 2 * std::sin(half_step)};
+    const double step = 2 * std::numbers::pi / static_cast<double>(n);
+    RegularPolygon result{{}, static_cast<float>(2 * std::sin(step / 2))};
+    for (std::size_t k = 0; k < n; ++k) {
+      const double angle = step * static_cast<double>(k);
+      result.corners.push_back(
+          {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))});
+    }
+    return result;
   }
 };
 
@@ -37,43 +42,48 @@ struct RegularPolygon {
 /// in its mean plane as complex numbers, of which the first Fourier coefficient is that polygon (in
 /// the least-squares sense, with free size and turn). The size is then drawn towards that of a
 /// polygon of the given side. A face that has turned over, or nearly, is fitted by a polygon that
-/// has not: `upward` is the normal of the surface under it.
+/// has not: `upward` is along the normal of the surface under it.
 void regular_targets(std::span<const Index> face, const std::vector<Vec3>& positions,
                      const Vec3& upward, float side, float evenness, std::span<Vec3> targets) {
+  static const std::array known{RegularPolygon::of(3), RegularPolygon::of(4), RegularPolygon::of(5),
+                                RegularPolygon::of(6)};
   const std::size_t n = face.size();
-  Vec3 center = Vec3::Zero(), normal = Vec3::Zero();
-  for (const Index v : face) center += positions[v];
-  center /= static_cast<float>(n);
+  RegularPolygon larger;
+  if (n > 6) larger = RegularPolygon::of(n);
+  const RegularPolygon& polygon = n > 6 ? larger : known[n - 3];
+  // The coefficient is the mean of the corners, each turned back by the angle of the polygon's.
+  Vec3 center = Vec3::Zero(), along = Vec3::Zero(), across = Vec3::Zero(), normal = Vec3::Zero();
   for (std::size_t k = 0; k < n; ++k) {
-    normal += (positions[face[k]] - center).cross(positions[face[(k + 1) % n]] - center);
+    const Vec3& p = positions[face[k]];
+    center += p;
+    along += polygon.corners[k][0] * p;
+    across += polygon.corners[k][1] * p;
   }
-  if (normal.dot(upward) < 0.2f * normal.norm()) normal = upward;
-  const float length = normal.norm();
-  if (!(length > 0)) {
+  const Vec3& first = positions[face[0]];
+  for (std::size_t k = 2; k < n; ++k) {
+    normal += (positions[face[k - 1]] - first).cross(positions[face[k]] - first);
+  }
+  const auto count = static_cast<float>(n);
+  center /= count;
+  float squared_length = normal.squaredNorm();
+  const float upright = normal.dot(upward);
+  if (upright <= 0 || upright * upright < 0.04f * squared_length * upward.squaredNorm()) {
+    normal = upward;
+    squared_length = upward.squaredNorm();
+  }
+  if (!(squared_length > 0)) {
     std::fill(targets.begin(), targets.end(), center);
     return;
   }
-  normal /= length;
-  Vec3 x = positions[face[0]] - center;
+  normal /= std::sqrt(squared_length);
+  Vec3 x = (along - normal.cross(across)) / count;
   x -= normal * normal.dot(x);
-  if (!(x.norm() > 0)) x = normal.unitOrthogonal();
-  x.normalize();
+  if (const float size = x.norm(); size > 0) {
+    x *= 1 - evenness + evenness * side / (polygon.side * size);
+  }
   const Vec3 y = normal.cross(x);
-  static const std::array known{RegularPolygon::of(3), RegularPolygon::of(4),
-                                RegularPolygon::of(5)};
-  const auto [step, unit_side] = n <= 5 ? known[n - 3] : RegularPolygon::of(n);
-  std::complex<float> coefficient = 0, turn = 1;
-  for (std::size_t k = 0; k < n; ++k, turn *= std::conj(step)) {
-    const Vec3 d = positions[face[k]] - center;
-    coefficient += std::complex<float>(d.dot(x), d.dot(y)) * turn;
-  }
-  coefficient /= static_cast<float>(n);
-  const float radius = side / unit_side;
-  if (const float size = std::abs(coefficient); size > 0) {
-    coefficient *= 1 - evenness + evenness * radius / size;
-  }
-  for (std::size_t k = 0; k < n; ++k, coefficient *= step) {
-    targets[k] = center + coefficient.real() * x + coefficient.imag() * y;
+  for (std::size_t k = 0; k < n; ++k) {
+    targets[k] = center + polygon.corners[k][0] * x + polygon.corners[k][1] * y;
   }
 }
 
@@ -191,8 +201,6 @@ void Smoother::fit_polygons(float side) {
         upward += normals_[v];
       }
       relative /= static_cast<float>(face.size());
-      const float length = upward.norm();
-      if (length > 0) upward /= length;
       regular_targets(face, mesh_.positions, upward, relative * side, evenness,
                       {targets_.data() + mesh_.faces.first(f), face.size()});
     }
