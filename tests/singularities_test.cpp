@@ -180,8 +180,11 @@ TEST(Jumps, ThereAndBackCancel) {
     position.posy = symmetry;
     const auto directions = solve_orientation(hierarchy, orientation);
     const auto points = solve_position(hierarchy, directions, 0.2f, position);
-    const Context context(1);
-    const auto jumps = edge_jumps(graph, directions, points, position.energy, context);
+    std::vector<std::array<Index, 2>> edges;  // in the order of Graph::neighbors
+    for (Index i = 0; i < graph.size(); ++i) {
+      for (const Index j : graph.neighbors_of(i)) edges.push_back({i, j});
+    }
+    const auto jumps = edge_jumps(graph, directions, points, position.energy, edges);
     std::size_t different = 0;
     for (Index i = 0; i < graph.size(); ++i) {
       for (Index e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {

@@ -78,16 +78,19 @@ void classify_edges(const Graph& graph, const OrientationField& orientation,
   std::vector<Found> found((n + grain - 1) / grain);
   context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
     Found& out = found[begin / grain];
-    for (std::size_t k = begin; k < end; ++k) {
-      const auto i = static_cast<Index>(k);
+    std::vector<std::array<Index, 2>> edges;
+    for (auto i = static_cast<Index>(begin); i < end; ++i) {
       for (const Index j : graph.neighbors_of(i)) {
-        if (j <= i) continue;
-        const Jump jump = edge_jump(graph, orientation, position, energy, i, j);
-        if (jump.is_zero()) {
-          out.merges.push_back({(position.points[i] - position.points[j]).norm(), i, j});
-        } else if (is_unit(jump.t, position.posy)) {
-          out.units.push_back({i, j});
-        }
+        if (j > i) edges.push_back({i, j});
+      }
+    }
+    const std::vector<Jump> jumps = edge_jumps(graph, orientation, position, energy, edges);
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+      const auto [i, j] = edges[e];
+      if (jumps[e].is_zero()) {
+        out.merges.push_back({(position.points[i] - position.points[j]).norm(), i, j});
+      } else if (is_unit(jumps[e].t, position.posy)) {
+        out.units.push_back({i, j});
       }
     }
   });

@@ -23,14 +23,21 @@ std::vector<std::uint8_t> zero_jumps(const Graph& graph, const OrientationField&
                                      const Context& context) {
   std::vector<std::uint8_t> rotations(graph.neighbors.size(), not_zero);
   context.for_ranges(graph.size(), 2048, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::array<Index, 2>> edges;
+    std::vector<Index> entries;  // of each edge
     for (auto i = static_cast<Index>(begin); i < end; ++i) {
       if (!is_free[i]) continue;
       for (Index e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
         const Index j = graph.neighbors[e];
         if (j < i || !is_free[j]) continue;
-        const Jump jump = edge_jump(graph, orientation, position, energy, i, j);
-        if (jump.is_zero()) rotations[e] = static_cast<std::uint8_t>(jump.rotation);
+        edges.push_back({i, j});
+        entries.push_back(e);
       }
+    }
+    const std::vector<Jump> jumps = edge_jumps(graph, orientation, position, energy, edges);
+    for (std::size_t k = 0; k < jumps.size(); ++k) {
+      if (!jumps[k].is_zero()) continue;
+      rotations[entries[k]] = static_cast<std::uint8_t>(jumps[k].rotation);
     }
   });
   return rotations;

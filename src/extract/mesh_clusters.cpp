@@ -47,7 +47,7 @@ class Collapse {
     }
     jumps_.resize(halfedges / 2);
     lattice_.lines.resize(halfedges / 2);
-    take_jumps(features, edges, FeatureJumps(graph, orientation, position, energy), corners,
+    take_jumps(features, edges, FeatureJumps(graph, orientation, position, energy, hold_), corners,
                context);
   }
 
@@ -119,18 +119,24 @@ class Collapse {
   void take_jumps(const FeatureLines& features, const FeatureEdges& edges,
                   const FeatureJumps& jumps, const std::vector<Index>& corners,
                   const Context& context) {
-    const auto hold = [&](Index v) { return static_cast<Hold>(hold_[v]); };
     // At least one is in a triangle beside it. Lines run between vertices that are alone.
     context.for_ranges(jumps_.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::array<Index, 2>> found;
       for (std::size_t e = begin; e < end; ++e) {
         const auto h = static_cast<Index>(2 * e);
         const Index corner = corners[h] != no_index ? corners[h] : corners[PolygonMap::twin(h)];
         const auto& triangle = disks_.triangles[corner / 3];
         Index i = triangle[corner % 3], j = triangle[(corner + 1) % 3];
         if (disks_.root[i] != sources_[map_.origin(h)]) std::swap(i, j);
+        found.push_back({i, j});
+      }
+      const std::vector<Jump> own = jumps.jumps(found);
+      for (std::size_t e = begin; e < end; ++e) {
+        const auto [i, j] = found[e - begin];
         const Index line = lattice_.lines[e] = edges.line(i, j);
-        const bool aligned = line != no_index && features.align[line] > 0;
-        jumps_[e] = disks_.between_roots(i, j, jumps.jump(i, j, hold(i), hold(j), aligned));
+        const bool is_aligned = line != no_index && features.align[line] > 0;
+        const Jump& jump = own[e - begin];
+        jumps_[e] = disks_.between_roots(i, j, is_aligned ? jumps.aligned({i, j}, jump) : jump);
       }
     });
     std::vector<Index> vertex(graph_.size(), no_index);  // of each root that is one vertex
@@ -144,6 +150,8 @@ class Collapse {
       Jump jump;
     };
     const auto look = [&](std::size_t begin, std::size_t end, std::vector<Found>& out) {
+      std::vector<std::array<Index, 2>> found;
+      std::vector<Index> halfedges;
       for (auto i = static_cast<Index>(begin); i < end; ++i) {
         const Index a = vertex[disks_.root[i]];
         if (a >= cut) continue;
@@ -154,10 +162,17 @@ class Collapse {
           const Index b = vertex[disks_.root[j]];
           const Index h = b < cut ? halfedge_between(a, b) : no_index;
           if (h == no_index) continue;
-          const Jump jump = disks_.between_roots(i, j, jumps.jump(i, j, hold(i), hold(j), false));
-          out.push_back(
-              {h / 2, deviation(a, b, jump.t), h % 2 == 0 ? jump : reversed(jump, lattice_.posy)});
+          found.push_back({i, j});
+          halfedges.push_back(h);
         }
+      }
+      const std::vector<Jump> own = jumps.jumps(found);
+      for (std::size_t k = 0; k < found.size(); ++k) {
+        const auto [i, j] = found[k];
+        const Index h = halfedges[k];
+        const Jump jump = disks_.between_roots(i, j, own[k]);
+        out.push_back({h / 2, deviation(map_.origin(h), map_.target(h), jump.t),
+                       h % 2 == 0 ? jump : reversed(jump, lattice_.posy)});
       }
     };
     std::vector<float> least(jumps_.size(), std::numeric_limits<float>::infinity());

@@ -44,20 +44,26 @@ Jump FeatureJumps::into_corner(Index i, Index corner) const {
   return jump;
 }
 
-Jump FeatureJumps::jump(Index i, Index j, Hold hold_i, Hold hold_j, bool aligned) const {
-  if (hold_i == at_corner && hold_j != at_corner) {
-    return reversed(jump(j, i, hold_j, hold_i, aligned), position_.posy);
-  }
-  Jump result = hold_j == at_corner && hold_i != at_corner
-                    ? into_corner(i, j)
-                    : edge_jump(graph_, orientation_, position_, energy_, i, j);
-  if (aligned) {
-    result.t = with_posy(position_.posy, [&]<int S>() {
-      return along_axis<S>(result.t, orientation_.directions[i], graph_.normals[i],
-                           graph_.positions[j] - graph_.positions[i]);
-    });
+std::vector<Jump> FeatureJumps::jumps(std::span<const std::array<Index, 2>> edges) const {
+  std::vector<Jump> result = edge_jumps(graph_, orientation_, position_, energy_, edges);
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const auto [i, j] = edges[e];
+    if (starts_at_corner({i, j})) result[e] = reversed(into_corner(j, i), position_.posy);
+    if (starts_at_corner({j, i})) result[e] = into_corner(i, j);
   }
   return result;
+}
+
+Jump FeatureJumps::aligned(const std::array<Index, 2>& edge, const Jump& jump) const {
+  const auto [i, j] = edge;
+  if (starts_at_corner(edge)) {
+    return reversed(aligned({j, i}, reversed(jump, position_.posy)), position_.posy);
+  }
+  const auto t = with_posy(position_.posy, [&]<int S>() {
+    return along_axis<S>(jump.t, orientation_.directions[i], graph_.normals[i],
+                         graph_.positions[j] - graph_.positions[i]);
+  });
+  return {jump.rotation, t};
 }
 
 bool is_along_axis(const std::array<int, 2>& t, int posy) {

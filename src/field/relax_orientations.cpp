@@ -7,24 +7,12 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "field/lanes.h"
+#include "field/symmetry_lanes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace meshgrain {
 namespace HWY_NAMESPACE {
 namespace {
-
-/// RoSy<N>::rotate() of field/rosy.h through less than half a circle.
-template <int N>
-HWY_INLINE Vec3s rotate(const Vec3s& o, const Vec3s& n, int k) {
-  if (k == 0) return o;
-  if constexpr (N == 4) {
-    return cross(n, o);
-  } else {
-    const float cosine = k == 1 ? 0.5f : -0.5f;
-    return all(cosine) * o + all(0.866025404f) * cross(n, o);
-  }
-}
 
 /// Two representatives, turned so that the angle between them is least.
 struct Pair {

@@ -36,33 +36,23 @@ double turn(const std::vector<Vec3>& normals, const OrientationField& field, Ind
   return i == low ? nearest : -nearest;
 }
 
-/// What `test(f, out)` appends to `out` for each face.
-template <typename Item, typename Test>
-std::vector<Item> at_faces(std::size_t faces, const Test& test, const Context& context) {
-  return collect<Item>(
-      faces,
-      [&](std::size_t begin, std::size_t end, std::vector<Item>& out) {
-        for (std::size_t f = begin; f < end; ++f) test(static_cast<Index>(f), out);
-      },
-      context);
-}
-
 }  // namespace
 
 std::vector<OrientationSingularity> orientation_singularities(const Mesh& triangles,
                                                               const std::vector<Vec3>& normals,
                                                               const OrientationField& field,
                                                               const Context& context) {
-  return at_faces<OrientationSingularity>(
-      triangles.faces.size(),
-      [&](Index f, std::vector<OrientationSingularity>& out) {
-        const auto v = triangles.faces[f];
-        double total = holonomy(normals[v[0]], normals[v[1]], normals[v[2]]);
-        for (std::size_t k = 0; k < 3; ++k) total += turn(normals, field, v[k], v[(k + 1) % 3]);
-        const auto index = static_cast<int>(std::lround(total * field.rosy / (2 * pi)));
-        if (index != 0) out.push_back({f, index});
-      },
-      context);
+  using Singularity = OrientationSingularity;
+  const auto look = [&](std::size_t begin, std::size_t end, std::vector<Singularity>& out) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto v = triangles.faces[f];
+      double total = holonomy(normals[v[0]], normals[v[1]], normals[v[2]]);
+      for (std::size_t k = 0; k < 3; ++k) total += turn(normals, field, v[k], v[(k + 1) % 3]);
+      const auto index = static_cast<int>(std::lround(total * field.rosy / (2 * pi)));
+      if (index != 0) out.push_back({static_cast<Index>(f), index});
+    }
+  };
+  return collect<Singularity>(triangles.faces.size(), look, context);
 }
 
 std::vector<PositionSingularity> position_singularities(const Mesh& triangles, const Graph& graph,
@@ -70,22 +60,21 @@ std::vector<PositionSingularity> position_singularities(const Mesh& triangles, c
                                                         const PositionField& position,
                                                         PositionEnergy energy,
                                                         const Context& context) {
-  return at_faces<PositionSingularity>(
-      triangles.faces.size(),
-      [&](Index f, std::vector<PositionSingularity>& out) {
-        const auto v = triangles.faces[f];
-        const int posy = position.posy;
-        std::array<int, 2> total{0, 0};
-        int rotation = 0;  // that turns the current vertex's frame into the first's
-        for (std::size_t k = 0; k < 3; ++k) {
-          const Jump jump = edge_jump(graph, orientation, position, energy, v[k], v[(k + 1) % 3]);
-          const auto t = rotate_jump(jump.t, (posy - rotation) % posy, posy);
-          total = {total[0] + t[0], total[1] + t[1]};
-          rotation = (rotation + jump.rotation) % posy;
-        }
-        if (rotation == 0 && (total[0] != 0 || total[1] != 0)) out.push_back({f, total});
-      },
-      context);
+  const auto look = [&](std::size_t begin, std::size_t end, std::vector<PositionSingularity>& out) {
+    std::vector<std::array<Index, 2>> sides;
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto v = triangles.faces[f];
+      for (std::size_t k = 0; k < 3; ++k) sides.push_back({v[k], v[(k + 1) % 3]});
+    }
+    const std::vector<Jump> jumps = edge_jumps(graph, orientation, position, energy, sides);
+    for (std::size_t f = begin; f < end; ++f) {
+      const Jump* around = &jumps[3 * (f - begin)];
+      const Jump sum =
+          composed(composed(around[0], around[1], position.posy), around[2], position.posy);
+      if (sum.rotation == 0 && !sum.is_zero()) out.push_back({static_cast<Index>(f), sum.t});
+    }
+  };
+  return collect<PositionSingularity>(triangles.faces.size(), look, context);
 }
 
 }  // namespace meshgrain
