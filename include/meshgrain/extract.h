@@ -22,8 +22,8 @@ struct ExtractOptions {
   /// Over a mesh: leave the pieces apart that non-manifold edges and vertices of `surface` join.
   bool manifold = false;
   /// Over a mesh: how much shape may be given up for each irregular vertex that goes away, as a sum
-  /// over edges of squared changes, in edge lengths. 0: none; infinity: all position singularities
-  /// go.
+  /// over edges of squared changes, in edge lengths, and over the faces that these spoil. 0: none;
+  /// infinity: all position singularities go.
   double cancelling_cost = 8;
   /// Edges of the graph that lie on the border of the surface: where the output is open. Without
   /// any, gaps that the walk leaves are closed.

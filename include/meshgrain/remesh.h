@@ -63,8 +63,9 @@ struct RemeshOptions {
   /// points). Values are taken from the nearest node, so the surfaces need not be the same.
   const Fields* fields = nullptr;
 
-  /// Bytes that the program as a whole may have in memory, at its peak. What may take more is
-  /// refused at once, by an estimate that is rather too high than too low. 0: no limit.
+  /// Bytes that a program which only remeshes this may have in memory, at its peak. What may take
+  /// more is refused at once, by an estimate that is rather too high than too low, and leaves out
+  /// whatever else the program holds. 0: no limit.
   std::size_t memory_limit = 0;
 
   bool count_singularities = true;  ///< For the report: takes a look at every face.

@@ -10,6 +10,7 @@ namespace meshgrain {
 double face_area(const Mesh& mesh, std::size_t f);
 double surface_area(const Mesh& mesh, const Context& context = Context(1));
 
+/// Of the sides of all faces, in input units: an edge between two faces counts twice in the mean.
 struct EdgeLengths {
   double mean = 0, max = 0;
 };

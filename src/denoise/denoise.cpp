@@ -26,7 +26,7 @@ bool may_be_noisy(const Mesh& triangles, const Context& context) {
     length += (triangles.positions[ends[0]] - triangles.positions[ends[1]]).norm();
   }
   const auto sides = static_cast<double>(triangles.faces.corners().size());
-  return length > least_share * edge_lengths(triangles).mean * sides / 2;
+  return length > least_share * edge_lengths(triangles, context).mean * sides / 2;
 }
 
 CreaseLengths lengths_without_noise(Mesh& sample, const Context& context) {

@@ -75,7 +75,7 @@ class Cancelling {
 
   void find_meetings() {
     std::vector<UnitWaves::Meeting> meetings;
-    waves_.grow(meetings);
+    waves_.grow(meetings, context_);
     for (const UnitWaves::Meeting& meeting : meetings) {
       const auto ends = waves_.ends(meeting);
       if (!ends) continue;

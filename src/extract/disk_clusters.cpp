@@ -68,6 +68,13 @@ bool is_inside(const Mesh& surface, std::span<const Index> around, Index v,
   return false;
 }
 
+template <typename Body>
+void for_indices(std::size_t count, const Body& body, const Context& context) {
+  context.for_ranges(count, 4096, [&](std::size_t begin, std::size_t end) {
+    for (auto i = static_cast<Index>(begin); i < end; ++i) body(i);
+  });
+}
+
 class DiskSearch {
  public:
   DiskSearch(const Mesh& surface, const VertexFaces& around, const Graph& graph, int posy,
@@ -109,9 +116,7 @@ class DiskSearch {
 
   template <typename Body>
   void for_vertices(const Body& body) const {
-    context_.for_ranges(graph_.size(), 4096, [&](std::size_t begin, std::size_t end) {
-      for (auto i = static_cast<Index>(begin); i < end; ++i) body(i);
-    });
+    for_indices(graph_.size(), body, context_);
   }
 
   template <typename Body>
@@ -291,30 +296,27 @@ class DiskSearch {
 /// Roots become the members that are nearest to the lattice point, the lowest of the nearest.
 void put_roots_in_the_middle(DiskClusters& disks, const Graph& graph, const PositionField& position,
                              const Context& context) {
-  const auto for_vertices = [&](const auto& body) {
-    context.for_ranges(graph.size(), 4096, [&](std::size_t begin, std::size_t end) {
-      for (auto i = static_cast<Index>(begin); i < end; ++i) body(i);
-    });
-  };
   // Of each root, the nearest: the bits of its distance, which are in order like the distances
   // themselves, and its index.
   std::vector<std::uint64_t> middle(graph.size(), std::numeric_limits<std::uint64_t>::max());
-  for_vertices([&](Index i) {
+  const auto find_nearest = [&](Index i) {
     const float distance = (position.points[i] - graph.positions[i]).squaredNorm();
     const std::uint64_t own = std::uint64_t{std::bit_cast<std::uint32_t>(distance)} << 32 | i;
     const std::atomic_ref best(middle[disks.root[i]]);
     std::uint64_t least = best.load(std::memory_order_relaxed);
     while (own < least && !best.compare_exchange_weak(least, own, std::memory_order_relaxed)) {
     }
-  });
+  };
+  for_indices(graph.size(), find_nearest, context);
   const std::vector<std::uint8_t> from_old = disks.rotation;
-  for_vertices([&](Index i) {
+  const auto move_root = [&](Index i) {
     Index& root = disks.root[i];
     const auto to = static_cast<Index>(middle[root]);  // the lower half
     const int turn = from_old[i] + disks.posy - from_old[to];
     disks.rotation[i] = static_cast<std::uint8_t>(turn % disks.posy);
     root = to;
-  });
+  };
+  for_indices(graph.size(), move_root, context);
 }
 
 }  // namespace

@@ -335,9 +335,10 @@ class LatticeRepair {
           if (lattice_.shift_leaves_axis(v, {x, y})) continue;
           lattice_.shift(v, {x, y});
           star(v, after_);
-          const double left = flaws(after_), cost = left + against_stretching * misfit(v);
+          const double left = flaws(after_);
+          const double cost = left > enough ? least : left + against_stretching * misfit(v);
           lattice_.shift(v, {-x, -y});
-          if (left > enough || cost >= least || !keeps_angles(before_, after_)) continue;
+          if (cost >= least || !keeps_angles(before_, after_)) continue;
           least = cost;
           best = {x, y};
         }

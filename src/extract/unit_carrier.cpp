@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "meshgrain/error.h"
+
 namespace meshgrain {
 
 UnitCarrier::UnitCarrier(const LatticeMesh& lattice, const Context& context)
@@ -25,6 +27,7 @@ UnitCarrier::UnitCarrier(const LatticeMesh& lattice, const Context& context)
       sides_[g] = first + k;
     }
   }
+  if (states() >= no_index) throw Error("the result would have too many faces for one run");
   triangles_.resize(halfedges_.size() / 4);
   context.for_ranges(triangles_.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) look_at(halfedges_[4 * t], triangles_[t]);

@@ -53,9 +53,10 @@ bool UnitWaves::is_nearest(const Meeting& meeting) {
   return true;
 }
 
-void UnitWaves::grow(std::vector<Meeting>& meetings) {
+void UnitWaves::grow(std::vector<Meeting>& meetings, const Context& context) {
   for (const std::uint32_t number : std::exchange(forgotten_, {})) come_back_to(number);
-  while (queue_.find()) {
+  for (std::size_t done = 1; queue_.find(); ++done) {
+    if ((done & 0xffff) == 0) context.check();
     get_ready();
     const auto [cost, number] = queue_.pop();
     const Label& label = labels_[number];
@@ -134,7 +135,11 @@ void UnitWaves::look_again(Index h) {
 }
 
 void UnitWaves::meet_again(const Meeting& meeting) {
-  if (meeting.other != no_index && places_[meeting.other].empty()) return;
+  const std::vector<Meeting>& nearest = nearest_[meeting.wave];
+  const auto same = std::ranges::find(nearest, meeting.other, &Meeting::other);
+  const bool stands = same != nearest.end() && same->here == meeting.here &&
+                      same->there == meeting.there && same->cost == meeting.cost;
+  if (!stands) return;  // another one of the same two waves does
   for (const std::uint32_t number : places_[meeting.wave]) {
     const Label& label = labels_[number];
     if (label.cost < never && label.wave() == meeting.wave) queue_.push(label.cost, number);
@@ -156,6 +161,7 @@ void UnitWaves::forget_beyond(std::uint32_t number) {
     from.pop_back();
     for (const Origin origin : {previous_edge, edge_before}) {
       out = carrier_.along(out);
+      if (carrier_.halfedge(out) == no_index) break;  // outside there is one side
       const std::uint32_t next = carrier_.number(carrier_.across(out));
       const Label& label = labels_[next];
       if (label.cost == never || label.wave() != wave || label.origin() != origin) continue;

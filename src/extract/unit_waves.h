@@ -29,12 +29,12 @@ class UnitWaves {
     std::uint32_t wave, other;  // `other` is no_index at an end
   };
 
-  /// Sends a wave out from the triangle left of h, which is its number.
+  /// Sends a wave out from the triangle left of h.
   void start(Index h);
 
   /// Lets waves go on as far as they come, and says where they meet: of each two, the places that
   /// were cheaper than those before.
-  void grow(std::vector<Meeting>& meetings);
+  void grow(std::vector<Meeting>& meetings, const Context& context);
 
   /// Takes back the wave that has started at h, so that the others can come there.
   void take_back(Index h);

@@ -45,12 +45,14 @@ struct RegularPolygon {
 /// has not: `upward` is along the normal of the surface under it.
 void regular_targets(std::span<const Index> face, const std::vector<Vec3>& positions,
                      const Vec3& upward, float side, float evenness, std::span<Vec3> targets) {
-  static const std::array known{RegularPolygon::of(3), RegularPolygon::of(4), RegularPolygon::of(5),
-                                RegularPolygon::of(6)};
+  static const std::array known{RegularPolygon::of(3), RegularPolygon::of(4),
+                                RegularPolygon::of(5), RegularPolygon::of(6),
+                                RegularPolygon::of(7), RegularPolygon::of(8)};
   const std::size_t n = face.size();
+  const bool is_known = n - 3 < known.size();
   RegularPolygon larger;
-  if (n > 6) larger = RegularPolygon::of(n);
-  const RegularPolygon& polygon = n > 6 ? larger : known[n - 3];
+  if (!is_known) larger = RegularPolygon::of(n);
+  const RegularPolygon& polygon = is_known ? known[n - 3] : larger;
   // The coefficient is the mean of the corners, each turned back by the angle of the polygon's.
   Vec3 center = Vec3::Zero(), along = Vec3::Zero(), across = Vec3::Zero(), normal = Vec3::Zero();
   for (std::size_t k = 0; k < n; ++k) {

@@ -81,7 +81,7 @@ Graph vertex_graph(const Mesh& mesh, const GraphOptions& options, const Context&
           const std::size_t k = face[0] == v ? 0 : face[1] == v ? 1 : 2;
           const Index w = face[(k + steps) % 3];
           const auto first = out.begin() + static_cast<std::ptrdiff_t>(start);
-          if (std::find(first, out.end(), w) == out.end()) out.push_back(w);
+          if (w != v && std::find(first, out.end(), w) == out.end()) out.push_back(w);
         };
         for (const Index f : around[v]) add(f, 1);
         for (const Index f : around[v]) add(f, 2);

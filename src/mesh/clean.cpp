@@ -11,6 +11,7 @@
 
 #include "mesh/duplicates.h"
 #include "mesh/marks.h"
+#include "mesh/vertex_faces.h"
 #include "meshgrain/surface.h"
 #include "util/collect.h"
 #include "util/edge_of.h"
@@ -53,13 +54,8 @@ std::vector<Index> canonical(std::span<const Index> face) {
 /// The faces that have the corners of an earlier one.
 std::vector<Index> find_duplicates(const Faces& faces, std::size_t vertices,
                                    const Context& context) {
-  // Faces with the same lowest corner are next to each other, without a sort of them all.
-  std::vector<Index> ends(vertices + 1, 0), sorted(faces.size());
-  for (std::size_t f = 0; f < faces.size(); ++f) ++ends[std::ranges::min(faces[f]) + 1];
-  std::partial_sum(ends.begin(), ends.end(), ends.begin());
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    sorted[ends[std::ranges::min(faces[f])]++] = static_cast<Index>(f);
-  }
+  // Those with the same lowest corner are next to each other, without a sort of them all.
+  const VertexFaces sorted = faces_by_lowest_vertex(faces, vertices, context);
   struct Keyed {
     std::array<Index, 3> key;
     Index face;
@@ -69,9 +65,7 @@ std::vector<Index> find_duplicates(const Faces& faces, std::size_t vertices,
     std::vector<Keyed> same;
     for (std::size_t v = first; v < last; ++v) {
       same.clear();
-      for (std::size_t k = v == 0 ? 0 : ends[v - 1]; k < ends[v]; ++k) {
-        same.push_back({key_of(faces[sorted[k]]), sorted[k]});
-      }
+      for (const Index f : sorted[v]) same.push_back({key_of(faces[f]), f});
       std::sort(same.begin(), same.end());
       for (std::size_t k = 1; k < same.size(); ++k) {
         for (std::size_t earlier = k; earlier-- > 0 && same[earlier].key == same[k].key;) {

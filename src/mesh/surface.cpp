@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "mesh/vertex_faces.h"
 #include "util/hilbert.h"
 #include "util/sum.h"
 
@@ -73,14 +74,7 @@ void permute(std::vector<T>& values, const std::vector<Index>& order, const Cont
 
 /// Sorts faces by their first vertex, those with the same one in the order that they had.
 void sort_faces(Faces& faces, std::size_t vertices, const Context& context) {
-  std::vector<Index> first(faces.size());
-  context.for_ranges(faces.size(), grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t f = begin; f < end; ++f) first[f] = std::ranges::min(std::as_const(faces)[f]);
-  });
-  std::vector<Index> start(vertices + 1, 0), order(faces.size());
-  for (const Index v : first) ++start[v + 1];
-  for (std::size_t v = 0; v < vertices; ++v) start[v + 1] += start[v];
-  for (std::size_t f = 0; f < first.size(); ++f) order[start[first[f]]++] = static_cast<Index>(f);
+  const std::vector<Index> order = faces_by_lowest_vertex(faces, vertices, context).faces;
   Faces sorted;
   if (const std::size_t degree = faces.uniform_degree(); degree > 0) {
     sorted = Faces::uniform(faces.size(), degree);

@@ -8,8 +8,7 @@
 
 namespace meshgrain {
 
-/// The faces around each vertex, in increasing order; a face that repeats a vertex appears as
-/// often.
+/// Faces by vertices, those of each in increasing order.
 struct VertexFaces {
   std::vector<Index> offsets;  ///< One more than there are vertices.
   std::vector<Index> faces;
@@ -19,6 +18,12 @@ struct VertexFaces {
   }
 };
 
+/// The faces around each vertex; a face that repeats a vertex appears as often. Throws Error if the
+/// mesh has more corners than an index can count.
 VertexFaces vertex_faces(const Mesh& mesh, const Context& context = Context());
+
+/// Each face once, at the lowest of its vertices.
+VertexFaces faces_by_lowest_vertex(const Faces& faces, std::size_t vertices,
+                                   const Context& context);
 
 }  // namespace meshgrain

@@ -58,16 +58,15 @@ double triangles_within(const Mesh& mesh, double limit, const Context& context) 
 /// By how many triangles the mesh grows that the fields live on.
 double added_triangles(const Mesh& input, double triangles, double area, const Target& target,
                        const RemeshOptions& options, const Context& context) {
-  const double length = target.edge_length(area);
-  const bool varied = !options.sizing.is_uniform();
-  const bool once = options.graph.nodes == GraphNodes::faces || !options.guides.empty();
-  const double finest = varied && once ? length / options.sizing.ratio : length;
-  const double limit = std::min(finest / 2, 2 * edge_lengths(input, context).mean);
+  const double mean = edge_lengths(input, context).mean;
+  const double limit = target.longest_input_edge(options, area, mean);
   if (!(limit > 0)) return 0;
   const double added = std::max(0.0, triangles_within(input, limit, context) - triangles);
   // Later on only those are split where small faces are wanted.
   constexpr double triangles_in_cell = 6;
-  return varied && !once ? added + triangles_in_cell * area / (length * length) : added;
+  const double length = target.edge_length(area);
+  const bool again = !options.sizing.is_uniform() && !splits_only_once(options);
+  return again ? added + triangles_in_cell * area / (length * length) : added;
 }
 
 double bytes_of_written_face(OutputFaces faces) {
@@ -121,6 +120,7 @@ Need needed(const Mesh& input, const RemeshOptions& options, const Context& cont
 /// "1.5 GiB", rounded up or down.
 std::string amount(double bytes, double (*round)(double)) {
   constexpr double mib = 1 << 20, gib = 1 << 30;
+  if (bytes < mib) return fmt::format("{:.0f} bytes", bytes);
   return bytes < gib ? fmt::format("{:.0f} MiB", round(bytes / mib))
                      : fmt::format("{:.1f} GiB", round(10 * bytes / gib) / 10);
 }

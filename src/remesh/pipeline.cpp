@@ -77,21 +77,15 @@ void Pipeline::sharpen() {
 
 void Pipeline::refine() {
   if (!is_cloud_) {
-    stage_("subdivide", [&] {
-      const double area = surface_area(surface_, context_);
-      if (!(area > 0)) throw Error("the input has no surface: all of its faces are degenerate");
-      // Where faces vary in size, and nothing can be split later on, fine enough for the
-      // smallest.
-      const bool once = !nodes_are_vertices_ || !options_.guides.empty();
-      const bool varied = once && !options_.sizing.is_uniform();
-      const double length = target_.edge_length(area) / (varied ? options_.sizing.ratio : 1);
+    const double area = stage_("subdivide", [&] {
+      const double whole = surface_area(surface_, context_);
+      if (!(whole > 0)) throw Error("the input has no surface: all of its faces are degenerate");
       const EdgeLengths edges = edge_lengths(surface_, context_);
-      const double limit = std::min(length / 2, 2 * edges.mean);
+      const double limit = target_.longest_input_edge(options_, whole, edges.mean);
       if (edges.max > limit) subdivide(surface_, limit, context_);
+      return whole;
     });
-  }
-  if (!is_cloud_ && !options_.guides.empty()) {
-    lay_guides(target_.edge_length(surface_area(surface_, context_)));
+    lay_guides(target_.edge_length(area));
   }
   stage_("order", [&] { put_in_order(); });
 }
@@ -206,9 +200,7 @@ bool Pipeline::fit_lengths_to_borders(double more_faces) {
 }
 
 void Pipeline::refine_for_sizes() {
-  // Guides are cut into the surface by now.
-  const bool may_split = !is_cloud_ && nodes_are_vertices_ && options_.guides.empty();
-  if (!may_split || lengths_.uniform()) return;
+  if (is_cloud_ || splits_only_once(options_) || lengths_.uniform()) return;
   std::vector<float> longest = scaled(lengths_, 0.5).values;
   if (!stage_("subdivide", [&] { return subdivide(surface_, longest, context_); })) return;
   stage_("order", [&] {

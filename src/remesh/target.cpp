@@ -50,6 +50,17 @@ double Target::face_side(double area) const {
   return edge_length(area) / sides_;
 }
 
+bool splits_only_once(const RemeshOptions& options) {
+  return options.graph.nodes == GraphNodes::faces || !options.guides.empty();
+}
+
+double Target::longest_input_edge(const RemeshOptions& options, double area,
+                                  double mean_edge) const {
+  const double length = edge_length(area);
+  const bool for_smallest = splits_only_once(options) && !options.sizing.is_uniform();
+  return std::min((for_smallest ? length / options.sizing.ratio : length) / 2, 2 * mean_edge);
+}
+
 double Target::growth(double grading) const {
   // Sides that grow as exp(r n) over n faces in a row grow by r with the distance.
   return sides_ * std::log(grading) / 3;

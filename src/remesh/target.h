@@ -7,6 +7,10 @@ namespace meshgrain {
 /// The symmetry of the position field that an output needs.
 int posy_of(OutputFaces faces);
 
+/// Whether the input's edges cannot be split again once the sizes of faces are known: the nodes are
+/// its faces, or guides are cut into it.
+bool splits_only_once(const RemeshOptions& options);
+
 /// How fine the lattice of the position field must be for the mesh that is to be written.
 class Target {
  public:
@@ -24,6 +28,11 @@ class Target {
   /// The mean side of the written faces, if the surface has this area: of quads, or of the
   /// triangles that hexagons are dual to.
   double face_side(double area) const;
+
+  /// How long edges of the input may be, if the surface has this area and its edges this mean
+  /// length: longer ones are split. Where faces vary in size, and nothing can be split later on,
+  /// fine enough for the smallest.
+  double longest_input_edge(const RemeshOptions& options, double area, double mean_edge) const;
 
   /// How fast edge lengths may grow with the distance, for faces to grow by the factor `grading`
   /// over three of them.

@@ -47,19 +47,20 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const Context& 
   if (input.is_point_cloud()) throw Error("symmetry needs a mesh: the input is a point cloud");
   if (options.faces == OutputFaces::hexagons) throw Error("hexagons cannot be made symmetric");
   const std::size_t vertices = input.positions.size(), faces = input.faces.size();
-  std::vector<std::string> notes = describe(clean(input));
-  if (!(surface_area(input) > 0)) {
+  std::vector<std::string> notes = describe(clean(input, context));
+  if (!(surface_area(input, context) > 0)) {
     throw Error("the input has no surface: all of its faces are degenerate");
   }
   const auto planes = find_symmetry(input, options.symmetry, notes, context);
   options.symmetry = {};
+  options.memory_limit = 0;  // has been looked at for the whole
   if (options.edge_length == 0 && options.face_count == 0 && options.vertex_count == 0) {
     options.vertex_count = std::max<std::size_t>(vertices / 16, 1);
   }
   if (!planes.empty()) {
     input = triangulate(input);
     // Before the cut, whose border has to stay where it is.
-    const double side = Target(options, vertices, 1).face_side(surface_area(input));
+    const double side = Target(options, vertices, 1).face_side(surface_area(input, context));
     if (take_out_noise(input, options, side, notes, context)) {
       options.features.creases = Creases::marked;
     }
@@ -77,7 +78,7 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const Context& 
   }
   RemeshResult result = remesh(std::move(input), options, context);
   for (const MirrorPlane& plane : planes) {
-    add_mirror_image(result.mesh, plane.axis, 0.2 * edge_lengths(result.mesh).mean);
+    add_mirror_image(result.mesh, plane.axis, 0.2 * edge_lengths(result.mesh, context).mean);
     notes.push_back(std::string("made symmetric across ") + "xyz"[plane.axis]);
   }
   result.report.input_vertices = vertices;
