@@ -26,7 +26,7 @@ class Mending {
 
   void run() {
     part_crossings();
-    search_.keep_apart({});
+    failed_slides_ = 0;
     for (const Demands& demands : ever_less) {
       demands_ = demands;
       for (const int rings : ever_wider) reshape_all(rings);
@@ -41,6 +41,7 @@ class Mending {
     std::vector<LocalSearch::Place> before;
     std::size_t crossings = 0;  // pairs of faces that pass through each other
     std::size_t bad = 0;        // faces, see is_bad()
+    bool may_cross = false;     // as the surface itself does
   };
 
   /// What makes a face acceptable.
@@ -107,6 +108,7 @@ class Mending {
       if (++tried > std::max(most_tried, mesh_.faces.size() / 100)) break;
       Place place = around(f, f, rings);
       --place.bad;
+      place.may_cross = place.crossings > 0 && surface_crosses(place);
       if (!reshape(place)) restore(place);
     }
   }
@@ -166,18 +168,22 @@ class Mending {
   }
 
   bool is_mended(const Place& place) const {
-    return count_bad(place) <= place.bad && count_crossings(place) <= place.crossings;
+    return count_bad(place) <= place.bad &&
+           (place.may_cross || count_crossings(place) <= place.crossings);
+  }
+
+  bool may_slide(const Place& place) const {
+    return place.faces.size() <= largest_to_slide &&
+           (place.may_cross || place.crossings <= most_crossings_to_slide) &&
+           failed_slides_ < most_failed_slides + mesh_.faces.size() / faces_a_failed_slide;
   }
 
   bool part(const Place& place) {
-    const bool small =
-        place.faces.size() <= largest_to_slide && place.crossings <= most_crossings_to_slide &&
-        failed_slides_ < most_failed_slides + mesh_.faces.size() / faces_a_failed_slide;
-    if (small) {
+    if (may_slide(place)) {
       if (slide(place)) return true;
       restore(place);
     }
-    if (loosen(place, Who::free) || (small && slide(place))) return true;
+    if (loosen(place, Who::free) || (may_slide(place) && slide(place))) return true;
     restore(place);
     return loosen(place, Who::free_and_ends);
   }
@@ -185,10 +191,10 @@ class Mending {
   /// Ends that are held go before features do.
   bool reshape(const Place& place) {
     for (const Who who : {Who::free, Who::free_and_ends}) {
-      if (loosen(place, who)) return true;
+      if (loosen(place, who) || (may_slide(place) && slide(place))) return true;
       restore(place);
     }
-    if (place.faces.size() <= largest_to_slide) {
+    if (may_slide(place)) {
       if (leave_lines(place)) return true;
       restore(place);
     }
@@ -227,10 +233,11 @@ class Mending {
 
   /// Over the surface. Returns whether the place is mended.
   bool slide(const Place& place) {
-    search_.keep_apart(place.faces);
+    search_.keep_apart(place.may_cross ? std::vector<Index>() : place.faces);
     for (const Index v : place.vertices) search_.touch(v);
     constexpr int sweeps = 5;
     search_.improve(place.vertices, sweeps, context_);
+    search_.keep_apart({});
     const bool mended = is_mended(place);
     if (!mended) ++failed_slides_;
     return mended;
