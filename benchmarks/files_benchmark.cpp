@@ -4,6 +4,7 @@
 
 #include "inputs.h"
 #include "meshgrain/io.h"
+#include "util/platform.h"
 
 namespace meshgrain::bench {
 namespace {
@@ -11,7 +12,10 @@ namespace {
 /// A file of its own, removed at the end.
 class TemporaryFile {
  public:
-  explicit TemporaryFile(const char* name) : path_(std::filesystem::temp_directory_path() / name) {}
+  TemporaryFile()
+      : path_(platform::temporary_beside(std::filesystem::temp_directory_path() / "x")) {
+    path_ += ".ply";
+  }
   ~TemporaryFile() {
     std::error_code ignored;
     std::filesystem::remove(path_, ignored);
@@ -26,7 +30,7 @@ class TemporaryFile {
 };
 
 void read(benchmark::State& state) {
-  const TemporaryFile file("meshgrain-benchmark-read.ply");
+  const TemporaryFile file;
   write_mesh(file.path(), shape());
   const Context context(threads(state));
   for (auto _ : state) benchmark::DoNotOptimize(read_mesh(file.path(), {}, context));
@@ -34,7 +38,7 @@ void read(benchmark::State& state) {
 }
 
 void write(benchmark::State& state) {
-  const TemporaryFile file("meshgrain-benchmark-write.ply");
+  const TemporaryFile file;
   const Mesh& mesh = shape();
   for (auto _ : state) write_mesh(file.path(), mesh);
   count(state, bytes(shape()) + file.bytes());

@@ -25,28 +25,34 @@ def measure(*arguments):
     return seconds, usage.ru_maxrss * unit
 
 
-def best(*arguments):
-    """The shortest time of three runs, or of one if that takes long, and the most memory."""
+def measure_often(*arguments):
+    """Three runs, or one if that takes long."""
     runs = [measure(*arguments)]
     while len(runs) < 3 and runs[0][0] < LONG:
         runs.append(measure(*arguments))
-    return min(seconds for seconds, _ in runs), max(peak for _, peak in runs)
+    return runs
+
+
+def reported(file, *arguments):
+    measure(*arguments, "--report", file)
+    return json.loads(file.read_text())
 
 
 def run(model, work):
-    """All figures of one model."""
-    result, report = work / "result.ply", work / "report.json"
-    seconds, peak = best(model, "-o", result, "-D")
-    one_thread, _ = best(model, "-o", result, "-D", "-t", 1)
-    measure(model, "-o", result, "-D", "--report", report)
-    told = json.loads(report.read_text())
+    """All figures of one model: the shortest times, and the most memory."""
+    arguments = (model, "-o", work / "result.ply", "-D")
+    runs = measure_often(*arguments)
+    one_thread = min(seconds for seconds, _ in measure_often(*arguments, "-t", 1))
+    # Of as many runs as were timed, or their stages would add up to more than the whole.
+    reports = [reported(work / "report.json", *arguments) for _ in runs]
+    told = min(reports, key=lambda report: report["seconds"])
     stages = {}
     for stage in told["stages"]:
         stages[stage["name"]] = stages.get(stage["name"], 0) + stage["seconds"]
     stages.pop("singularities", None)  # counted for the report alone
     return {"model": Path(model).stem, "vertices": told["input"]["vertices"],
-            "faces": told["output"]["faces"], "threads": told["threads"], "seconds": seconds,
-            "one_thread": one_thread, "peak": peak, "stages": stages}
+            "faces": told["output"]["faces"], "seconds": min(seconds for seconds, _ in runs),
+            "one_thread": one_thread, "peak": max(peak for _, peak in runs), "stages": stages}
 
 
 def slope(runs):

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <array>
@@ -119,6 +120,29 @@ TEST(Finish, ThinWallsDoNotPassThroughEachOther) {
       made::expect_same_topology(mesh_statistics(result), mesh_statistics(bowl));
       EXPECT_TRUE(find_crossings(result, Context()).empty());
     }
+  }
+}
+
+/// A bellows with folds narrower than the faces, which pass through each other until they are
+/// mended. There they look at each other from afar.
+TEST(Finish, AnyNumberOfThreadsMendsAlike) {
+  std::vector<std::array<double, 2>> profile;
+  constexpr int folds = 8, steps = 16 * folds;
+  profile.push_back({0, -1});
+  for (int k = 0; k <= steps; ++k) {
+    const double turn = 2 * std::numbers::pi * folds * k / steps;
+    profile.push_back({0.65 + 0.15 * std::cos(turn), 2.0 * k / steps - 1});
+  }
+  profile.push_back({0, 1});
+  const Mesh bellows = turned(profile, 60);
+  const tbb::global_control many(tbb::global_control::max_allowed_parallelism, 8);
+  RemeshOptions options;
+  options.face_count = 500;
+  const Mesh one = remesh(bellows, options, Context(1)).mesh;
+  for (const int threads : {2, 3, 8}) {
+    const Mesh mesh = remesh(bellows, options, Context(threads)).mesh;
+    EXPECT_EQ(mesh.positions, one.positions) << threads;
+    EXPECT_TRUE(std::ranges::equal(mesh.faces.corners(), one.faces.corners())) << threads;
   }
 }
 

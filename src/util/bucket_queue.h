@@ -49,8 +49,6 @@ class BucketQueue {
     for (const Entry& entry : std::exchange(later_, {})) push(entry.cost, entry.item);
     return true;
   }
-  /// No entry that is left costs less than that, but for rounding.
-  float least() const { return start_ + static_cast<float>(lowest_) * width_; }
   Entry pop() {
     const Entry entry = buckets_[lowest_].back();
     buckets_[lowest_].pop_back();
