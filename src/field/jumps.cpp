@@ -132,12 +132,10 @@ void find_jumps(const Graph& graph, const OrientationField& orientation,
                 const PositionField& position, PositionEnergy energy,
                 std::span<const std::array<Index, 2>> edges, Jump* jumps) {
   with_posy(position.posy, [&]<int S>() {
-    const auto with = [&]<PositionEnergy E>() {
+    with_energy(energy, [&]<PositionEnergy E>() {
       for_edges(graph, orientation, position, edges, jumps,
                 [](const Nodes& i, const Nodes& j) { return jumps_between<S, E>(i, j); });
-    };
-    energy == PositionEnergy::intrinsic ? with.template operator()<PositionEnergy::intrinsic>()
-                                        : with.template operator()<PositionEnergy::extrinsic>();
+    });
   });
 }
 

@@ -117,14 +117,11 @@ void relax(const Graph& graph, const DirectionConstraints& constraints, int rosy
            OrientationEnergy energy, std::span<const Index> nodes, const Vec3* field,
            Vec3* values) {
   with_rosy(rosy, [&]<int N>() {
-    const auto with = [&]<OrientationEnergy E>() {
+    with_energy(energy, [&]<OrientationEnergy E>() {
       for_lanes(graph, nodes, values, [&](NeighborLanes& around) {
         return Relaxation<N, E>(graph, constraints, field, around).run();
       });
-    };
-    energy == OrientationEnergy::intrinsic
-        ? with.template operator()<OrientationEnergy::intrinsic>()
-        : with.template operator()<OrientationEnergy::extrinsic>();
+    });
   });
 }
 

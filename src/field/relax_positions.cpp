@@ -110,12 +110,10 @@ void relax(const Graph& graph, const LatticeFrame& frame, const LineConstraints&
            Vec3* values) {
   const Level level{graph, frame, constraints, field};
   with_posy(posy, [&]<int S>() {
-    const auto with = [&]<PositionEnergy E>() {
+    with_energy(energy, [&]<PositionEnergy E>() {
       for_lanes(graph, nodes, values,
                 [&](NeighborLanes& around) { return Relaxation<S, E>(level, around).run(); });
-    };
-    energy == PositionEnergy::intrinsic ? with.template operator()<PositionEnergy::intrinsic>()
-                                        : with.template operator()<PositionEnergy::extrinsic>();
+    });
   });
 }
 

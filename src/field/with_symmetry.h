@@ -36,4 +36,12 @@ decltype(auto) with_posy(int posy, F&& f) {
   }
 }
 
+/// Calls `f.operator()<E>()` for the kind of energy: whatever is not intrinsic is measured in
+/// space.
+template <typename Energy, typename F>
+decltype(auto) with_energy(Energy energy, F&& f) {
+  return energy == Energy::intrinsic ? f.template operator()<Energy::intrinsic>()
+                                     : f.template operator()<Energy::extrinsic>();
+}
+
 }  // namespace meshgrain
