@@ -21,6 +21,7 @@ constexpr double node_of_vertex = 330, node_of_face = 260;  // with its part of 
 constexpr double point = 130, neighbor = 32;                // of a cloud, each of its neighbours
 constexpr double input_vertex = 12, input_corner = 4;
 constexpr double written_corner = 65;
+constexpr double far_waves = 75;    // more, where singularities are cancelled however far apart
 constexpr double given_node = 250;  // of RemeshOptions::fields
 
 /// Into how many triangles subdivide() splits one with edges of these lengths: each edge is halved
@@ -69,11 +70,12 @@ double added_triangles(const Mesh& input, double triangles, double area, const T
   return again ? added + triangles_in_cell * area / (length * length) : added;
 }
 
-double bytes_of_written_face(OutputFaces faces) {
-  if (faces == OutputFaces::triangles) return 3 * written_corner;
+double bytes_of_written_face(const RemeshOptions& options) {
+  const double corner = written_corner + (options.regularity < 1 ? 0 : far_waves);
+  if (options.faces == OutputFaces::triangles) return 3 * corner;
   // The dual of two triangles, which are there first.
-  if (faces == OutputFaces::hexagons) return 12 * written_corner;
-  return 4 * written_corner;
+  if (options.faces == OutputFaces::hexagons) return 12 * corner;
+  return 4 * corner;
 }
 
 /// Bytes at any target, and those that this one takes besides.
@@ -85,7 +87,7 @@ Need needed_by_cloud(const Mesh& input, const RemeshOptions& options, const Targ
   const auto points = static_cast<double>(input.positions.size());
   const double written = options.edge_length > 0 ? points : 1 / target.face_area(1);
   const auto neighbors = static_cast<double>(options.graph.neighbors);
-  return {points * (point + neighbor * neighbors), written * bytes_of_written_face(options.faces)};
+  return {points * (point + neighbor * neighbors), written * bytes_of_written_face(options)};
 }
 
 Need needed_by_mesh(const Mesh& input, const RemeshOptions& options, const Target& target,
@@ -96,7 +98,7 @@ Need needed_by_mesh(const Mesh& input, const RemeshOptions& options, const Targe
   const double triangles = static_cast<double>(input.faces.corners().size()) -
                            2 * static_cast<double>(input.faces.size());
   const double added = added_triangles(input, triangles, area, target, options, context);
-  const double written = area / target.face_area(area) * bytes_of_written_face(options.faces);
+  const double written = area / target.face_area(area) * bytes_of_written_face(options);
   // Two triangles come with each vertex that is put between others.
   if (options.graph.nodes == GraphNodes::vertices) {
     return {vertices * node_of_vertex, added / 2 * node_of_vertex + written};
