@@ -39,8 +39,9 @@ class Mending {
     std::vector<Index> faces;
     std::vector<Index> vertices;  // those with all of their faces in it
     std::vector<LocalSearch::Place> before;
+    std::vector<Index> at_bad;  // those of them that belong to bad faces, see is_bad()
     std::size_t crossings = 0;  // pairs of faces that pass through each other
-    std::size_t bad = 0;        // faces, see is_bad()
+    std::size_t bad = 0;        // faces
     bool may_cross = false;     // as the surface itself does
   };
 
@@ -135,8 +136,15 @@ class Mending {
       if (std::ranges::includes(place.faces, around_[v])) place.vertices.push_back(v);
     }
     for (const Index v : place.vertices) place.before.push_back(search_.place(v));
+    for (const Index h : place.faces) {
+      if (!is_bad(h)) continue;
+      ++place.bad;
+      for (const Index v : mesh_.faces[h]) {
+        if (std::ranges::binary_search(place.vertices, v)) place.at_bad.push_back(v);
+      }
+    }
+    sort_unique(place.at_bad);
     place.crossings = count_crossings(place);
-    place.bad = count_bad(place);
     return place;
   }
 
@@ -198,7 +206,7 @@ class Mending {
       if (leave_lines(place)) return true;
       restore(place);
     }
-    return loosen(place, Who::all);
+    return loosen(place, Who::free_and_at_bad);
   }
 
   float mean_edge(const Place& place) const {
@@ -246,23 +254,18 @@ class Mending {
   /// Lets the vertices of bad faces leave their feature lines, and move over the surface.
   bool leave_lines(const Place& place) {
     bool any = false;
-    for (const Index f : place.faces) {
-      if (!is_bad(f)) continue;
-      for (const Index v : mesh_.faces[f]) {
-        if (!std::ranges::binary_search(place.vertices, v)) continue;
-        any = placement_.release(v) || any;
-      }
-    }
+    for (const Index v : place.at_bad) any = placement_.release(v) || any;
     return any && slide(place);
   }
 
-  /// Who may leave the surface.
-  enum class Who { free, free_and_ends, all };
+  /// Who may leave the surface; `free_and_at_bad`: ends too, and the lines only beside bad faces.
+  enum class Who { free, free_and_ends, free_and_at_bad };
 
-  bool may_leave(Index v, Who who) const {
-    if (corners_stay_ && placement_.is_fixed(v)) return false;
-    if (who == Who::all || placement_.is_free(v)) return true;
-    return who == Who::free_and_ends && placement_.is_tethered(v);
+  bool may_leave(const Place& place, Index v, Who who) const {
+    if (placement_.is_free(v)) return true;
+    if (placement_.is_tethered(v)) return who != Who::free;
+    return who == Who::free_and_at_bad && !(corners_stay_ && placement_.is_fixed(v)) &&
+           std::ranges::binary_search(place.at_bad, v);
   }
 
   /// Off the surface, but not far: each vertex towards its neighbours, until nothing crosses.
@@ -279,7 +282,7 @@ class Mending {
         next.push_back(start + moved * std::min(1.0f, farthest / std::max(moved.norm(), 1e-30f)));
       }
       for (std::size_t k = 0; k < place.vertices.size(); ++k) {
-        if (!may_leave(place.vertices[k], who)) continue;
+        if (!may_leave(place, place.vertices[k], who)) continue;
         search_.put(place.vertices[k], {next[k], place.before[k].seed});
       }
     }
