@@ -75,13 +75,19 @@ class Cancelling {
 
   void find_meetings() {
     std::vector<UnitWaves::Meeting> meetings;
-    waves_.grow(meetings, context_);
-    for (const UnitWaves::Meeting& meeting : meetings) {
-      const auto ends = waves_.ends(meeting);
-      if (!ends) continue;
-      const double cost = cost_for_each(meeting, *ends);
-      if (cost < most_) queue_.push({cost, meeting});
-    }
+    do {
+      meetings.clear();
+      waves_.grow(meetings, context_);
+      for (const UnitWaves::Meeting& meeting : meetings) {
+        const auto ends = waves_.ends(meeting);
+        if (!ends) {
+          waves_.meet_again(meeting);
+          continue;
+        }
+        const double cost = cost_for_each(meeting, *ends);
+        if (cost < most_) queue_.push({cost, meeting});
+      }
+    } while (!meetings.empty());
   }
 
   /// Returns false if that cannot be done, and nothing has.

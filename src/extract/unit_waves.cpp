@@ -48,7 +48,7 @@ bool UnitWaves::is_nearest(const Meeting& meeting) {
     nearest.push_back(meeting);
     return true;
   }
-  if (same->cost <= meeting.cost && ends(*same)) return false;
+  if (same->cost <= meeting.cost) return false;
   *same = meeting;
   return true;
 }
@@ -129,17 +129,20 @@ void UnitWaves::look_again(Index h) {
       if (labels_[seed].cost < never && labels_[seed].origin() == nowhere) {
         forget_beyond(seed);
         forget(seed);
+      } else if (wave_[UnitCarrier::triangle(in)] != no_index) {
+        forgotten_.push_back(seed);  // it may now be cheaper to start there
       }
     }
   }
 }
 
 void UnitWaves::meet_again(const Meeting& meeting) {
-  const std::vector<Meeting>& nearest = nearest_[meeting.wave];
+  std::vector<Meeting>& nearest = nearest_[meeting.wave];
   const auto same = std::ranges::find(nearest, meeting.other, &Meeting::other);
   const bool stands = same != nearest.end() && same->here == meeting.here &&
                       same->there == meeting.there && same->cost == meeting.cost;
   if (!stands) return;  // another one of the same two waves does
+  nearest.erase(same);
   for (const std::uint32_t number : places_[meeting.wave]) {
     const Label& label = labels_[number];
     if (label.cost < never && label.wave() == meeting.wave) queue_.push(label.cost, number);
@@ -189,7 +192,10 @@ void UnitWaves::come_back_to(std::uint32_t number) {
 std::optional<UnitWaves::Ends> UnitWaves::ends(const Meeting& meeting) const {
   const Label& here = labels_[meeting.here];
   if (here.cost != meeting.here_cost) return std::nullopt;
-  if (meeting.there == no_index) return Ends{starts_[here.wave()], no_index};
+  if (meeting.there == no_index) {
+    const bool stands = meeting.cost == here.cost + carrier_.ending(carrier_.state(meeting.here));
+    return stands ? std::optional<Ends>({starts_[here.wave()], no_index}) : std::nullopt;
+  }
   const Label& there = labels_[meeting.there];
   if (there.cost != meeting.there_cost || there.wave() == here.wave()) return std::nullopt;
   return Ends{starts_[here.wave()], starts_[there.wave()]};
