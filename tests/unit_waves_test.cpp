@@ -107,6 +107,16 @@ std::map<Index, int> line_lengths(const LatticeMesh& lattice) {
   return result;
 }
 
+/// A corner of the features that a triangle is a cone around, or no_index.
+Index held_apex(const LatticeMesh& lattice, Index h) {
+  for (const Index g : {h, lattice.map.next(h), lattice.map.prev(h)}) {
+    const Jump sum = lattice.sum(g);
+    const bool is_apex = sum.rotation != 0 && sum.is_zero();
+    if (is_apex && lattice.hold[lattice.map.origin(g)] == at_corner) return g;
+  }
+  return no_index;
+}
+
 /// The cost of passing from one edge of a triangle to another, by doing it.
 double cost_of_passing(LatticeMesh& lattice, const std::map<Index, int>& lengths, Index in,
                        int unit, Index out, int turned) {
@@ -114,14 +124,17 @@ double cost_of_passing(LatticeMesh& lattice, const std::map<Index, int>& lengths
   const std::array<int, 2> leaving = unit_vector(turned, lattice.posy);
   const Jump before = lattice.jump(out), sum = lattice.sum(in);
   const double misfit = lattice.triangle(in).misfit();
+  const Index apex = held_apex(lattice, in);
   add(lattice, in, entering, 1);
   add(lattice, out, leaving, -1);
+  const bool moves_apex = apex != no_index && !lattice.sum(apex).is_zero();
   const Jump after = lattice.jump(out);
   const double worse = lattice.triangle(in).misfit() - misfit;
   EXPECT_EQ(lattice.sum(in).t, sum.t);  // nothing stays
   EXPECT_EQ(lattice.sum(in).rotation, sum.rotation);
   add(lattice, in, entering, -1);
   add(lattice, out, leaving, 1);
+  if (moves_apex) return std::numeric_limits<double>::infinity();
   double crossing = std::max(lattice.misfit(out, after.t) - lattice.misfit(out, before.t), 0.05);
   if (lattice.on_feature(out)) {
     if (after.is_zero() || lattice.leaves_axis(out, after.t)) {
@@ -252,7 +265,9 @@ Costs meetings_of(const SlowWaves& waves, const UnitCarrier& carrier) {
     const auto& label = waves.labels[here];
     if (label.start == no_index) continue;
     const State in = carrier.state(here);
-    if (carrier.gain(in) == 0) note(result, label.start, no_index, label.cost + carrier.ending(in));
+    if (carrier.gain(in) == 0 && carrier.ending(in) != UnitCarrier::forbidden) {
+      note(result, label.start, no_index, label.cost + carrier.ending(in));
+    }
     const auto& other = waves.labels[carrier.number(carrier.across(carrier.opposite(in)))];
     if (other.start == no_index || other.start == label.start) continue;
     note(result, label.start, other.start,

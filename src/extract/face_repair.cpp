@@ -67,7 +67,9 @@ bool FaceRepair::is_straight(Index to, Index from, const Vec3& normal) const {
   const Vec3 a = clusters_.positions[map_.target(to)] - clusters_.positions[v];
   const Vec3 b = clusters_.positions[map_.origin(from)] - clusters_.positions[v];
   constexpr float straight = -0.6f;
-  return normal.dot(a.cross(b)) < 0 || a.dot(b) < straight * a.norm() * b.norm();
+  // A triangle that lies across a hole is turned over.
+  const bool turned_over = normal.dot(clusters_.normals[v]) < -0.5f * normal.norm();
+  return turned_over != (normal.dot(a.cross(b)) < 0) || a.dot(b) < straight * a.norm() * b.norm();
 }
 
 bool FaceRepair::is_last_rung(Index h) const {
@@ -79,39 +81,47 @@ void FaceRepair::part_straight_angles() {
   for (Index h = 0; h < map_.halfedges(); ++h) {
     if (map_.removed(h) || hole_[h]) continue;
     if (!is_straight(h, map_.prev(h), face_normal(h))) continue;
-    // A triangle needs room first.
-    const Index across = map_.next(h), beyond = PolygonMap::twin(across);
-    if (map_.degree(h) == 3) {
-      const bool fixed = hole_[beyond] || line(across) != no_index || is_last_rung(across) ||
-                         is_last_rung(beyond) || map_.valence(map_.origin(across)) <= 3 ||
-                         map_.valence(map_.target(across)) <= 3 || touches_itself(across);
-      bool has_goal = false;
-      for (Index g = map_.next(map_.next(beyond)); g != beyond; g = map_.next(g)) {
-        has_goal = has_goal || !map_.adjacent(map_.origin(h), map_.origin(g));
-      }
-      if (fixed || !has_goal) continue;
-      map_.remove_edge(across);
-    }
-    // To where the two parts are best.
-    std::vector<Index> orbit, corners;
-    map_.orbit(h, orbit);
-    double least = std::numeric_limits<double>::infinity();
-    Index best = no_index;
-    const std::size_t n = orbit.size();
-    for (std::size_t k = 2; k + 1 < n; ++k) {
-      if (map_.adjacent(map_.origin(h), map_.origin(orbit[k]))) continue;
-      corners.clear();
-      for (std::size_t c = 0; c <= k; ++c) corners.push_back(map_.origin(orbit[c]));
-      double cost = polygon_cost(corners);
-      corners.assign(1, map_.origin(h));
-      for (std::size_t c = k; c < n; ++c) corners.push_back(map_.origin(orbit[c]));
-      cost += polygon_cost(corners);
-      if (cost >= least) continue;
-      least = cost;
-      best = orbit[k];
-    }
-    if (best != no_index) add_edge(h, best);
+    if ((map_.degree(h) == 3 && !make_room(h)) || !part_face(h)) add_hub(h);
   }
+}
+
+/// Joins a triangle with the face opposite to the origin of h, if the edge between them may go.
+bool FaceRepair::make_room(Index h) {
+  const Index across = map_.next(h), beyond = PolygonMap::twin(across);
+  const bool fixed = hole_[beyond] || line(across) != no_index || is_last_rung(across) ||
+                     is_last_rung(beyond) || map_.valence(map_.origin(across)) <= 3 ||
+                     map_.valence(map_.target(across)) <= 3 || touches_itself(across);
+  bool has_goal = false;
+  for (Index g = map_.next(map_.next(beyond)); g != beyond; g = map_.next(g)) {
+    has_goal = has_goal || !map_.adjacent(map_.origin(h), map_.origin(g));
+  }
+  if (fixed || !has_goal) return false;
+  map_.remove_edge(across);
+  return true;
+}
+
+/// Cuts a face in two from the origin of h, to where the two are best, if there is such a place.
+bool FaceRepair::part_face(Index h) {
+  std::vector<Index> orbit, corners;
+  map_.orbit(h, orbit);
+  double least = std::numeric_limits<double>::infinity();
+  Index best = no_index;
+  const std::size_t n = orbit.size();
+  for (std::size_t k = 2; k + 1 < n; ++k) {
+    if (map_.adjacent(map_.origin(h), map_.origin(orbit[k]))) continue;
+    corners.clear();
+    for (std::size_t c = 0; c <= k; ++c) corners.push_back(map_.origin(orbit[c]));
+    double cost = polygon_cost(corners);
+    corners.assign(1, map_.origin(h));
+    for (std::size_t c = k; c < n; ++c) corners.push_back(map_.origin(orbit[c]));
+    cost += polygon_cost(corners);
+    if (cost >= least) continue;
+    least = cost;
+    best = orbit[k];
+  }
+  if (best == no_index) return false;
+  add_edge(h, best);
+  return true;
 }
 
 void FaceRepair::remove_dangling() {

@@ -36,7 +36,8 @@ class FaceRepair {
   void find_holes(std::span<const std::uint8_t> border_edges,
                   std::span<const std::uint8_t> border_vertices, std::size_t largest_gap);
 
-  /// Where a line runs straight along two edges of one face, gives that face another edge there.
+  /// Where a line runs straight along two edges of one face, gives that face another edge there:
+  /// to another corner, or to a new vertex in its middle.
   void part_straight_angles();
 
   // Quads (quad_repair.cpp).
@@ -105,6 +106,8 @@ class FaceRepair {
   /// `from`, has a straight angle there. `normal` is that of the face.
   bool is_straight(Index to, Index from, const Vec3& normal) const;
   Vec3 face_normal(Index h) const;
+  bool make_room(Index h);
+  bool part_face(Index h);
   /// By how much the number of irregular vertices falls if the origin of h and the corner opposite
   /// to it in their quad become one; nothing if they must not, or it is less than `least`.
   std::optional<int> closing_gain(Index h, int least) const;

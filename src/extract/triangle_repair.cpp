@@ -84,7 +84,9 @@ std::optional<int> FaceRepair::contraction_gain(Index h) {
     if (hole_[side]) continue;
     ++sides;
     const Index apex = map_.target(map_.next(side));
-    if (map_.valence(apex) <= 3) return std::nullopt;
+    // Of its two edges to the ends of h, that to b goes.
+    const Index going = side == h ? PolygonMap::twin(map_.next(h)) : map_.prev(t);
+    if (map_.valence(apex) <= 3 || is_last_rung(going)) return std::nullopt;
     gain += irregular(apex, 0) - irregular(apex, -1);
   }
   if (sides < 2) return std::nullopt;

@@ -75,8 +75,9 @@ class UnitCarrier {
     return at(in).is_plane ? std::nullopt : gain_of_singular(in);
   }
 
-  /// To leave costs at least a little, so that paths are no longer than they must be, and is
-  /// `forbidden` where a feature line would leave its axis.
+  /// To leave costs at least a little, so that paths are no longer than they must be. It is
+  /// `forbidden` where a feature line would leave its axis, and so is all that would move the apex
+  /// of a cone away from a corner of the features.
   static constexpr float least_step = 0.05f;
   static constexpr float forbidden = std::numeric_limits<float>::infinity();
 
@@ -128,6 +129,7 @@ class UnitCarrier {
   std::optional<int> gain_of_singular(const State& in) const;
   double step_cost(const State& out, double worse) const;
   float passing_slowly(const State& in, const State& out, std::size_t corner) const;
+  bool moves_apex(Index h, const LatticeTriangle& before, const LatticeTriangle& after) const;
   void weigh_lines();
 
   const LatticeMesh& lattice_;

@@ -103,6 +103,7 @@ void UnitWaves::meet(const State& in, std::vector<Meeting>& meetings) {
   // Other Burgers vectors have a wave of their own.
   if (carrier_.gain(in) != 0) return;
   const float cost = label.cost + carrier_.ending(in);
+  if (cost == UnitCarrier::forbidden) return;
   const Meeting meeting{here, no_index, label.cost, 0, cost, label.wave(), no_index};
   if (is_nearest(meeting)) meetings.push_back(meeting);
 }
