@@ -14,6 +14,7 @@ COLUMNS = (
     ("area σ", lambda s: s["area"]["sigma"]),
     ("angle σ", lambda s: s["angle"]["sigma"]),
     ("inverted", lambda s: s["inverted_quads"]),
+    ("Jacobian", lambda s: s["scaled_jacobian"]["min"]),
     ("distance", lambda s: s["distance_to_input"]["mean"]),
     ("farthest", lambda s: s["distance_from_input"]["max"]),
 )
@@ -27,10 +28,10 @@ def main(folder, work, output):
         "# Quality",
         "",
         "Made by `scripts/evaluate`: pure quads by default options. Irregular vertices are those of the",
-        "inside without four neighbours; areas are relative to the mean; angles in degrees; distances",
-        "(from the result to the input, and the farthest that the input is from the result) relative to",
-        "the diagonal of the bounding box. Topology: Euler number, pieces and border loops, and what the",
-        "input had where that differs.",
+        "inside without four neighbours; areas are relative to the mean; angles in degrees; Jacobian: the",
+        "least scaled Jacobian of all quads; distances (from the result to the input, and the farthest",
+        "that the input is from the result) relative to the diagonal of the bounding box. Topology: Euler",
+        "number, pieces and border loops, and what the input had where that differs.",
     ]
     for count in COUNTS:
         lines += ["", f"## {count:,} quads", "",

@@ -90,6 +90,10 @@ class EveryModel : public Models {
       }
       if (std::find(std::begin(compared), std::end(compared), name) == std::end(compared)) continue;
       ++means.models;
+      if (faces == OutputFaces::quads) {
+        EXPECT_GE(s.jacobian_p01, 0.7);
+        EXPECT_GE(s.jacobian_min, 0.1);
+      }
       means.area_sigma += s.area_sigma;
       means.angle_sigma += s.angle_sigma;
       means.singularities += static_cast<double>(s.singularities);

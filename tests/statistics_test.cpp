@@ -68,6 +68,17 @@ TEST(MeshStatistics, OfARegularGrid) {
   EXPECT_EQ(s.boundary_loops, 1u);
   EXPECT_EQ(s.euler, 1);
   EXPECT_EQ(s.inverted_quads, 0u);
+  EXPECT_NEAR(s.jacobian_min, 1, 1e-6);
+}
+
+TEST(MeshStatistics, SkewedQuadsHaveTheSineOfTheirAngle) {
+  Mesh mesh = quad_grid(15, 15, [](Index, Index) { return false; });
+  mesh.positions.front() = {0.5f, 0.5f, 0};  // a corner of the first quad, which is now a triangle
+  const auto s = mesh_statistics(mesh);
+  EXPECT_NEAR(s.jacobian_min, 0, 1e-6);
+  EXPECT_NEAR(s.jacobian_p01, 1, 1e-6);
+  for (Vec3& p : mesh.positions) p.x() += p.y();
+  EXPECT_NEAR(mesh_statistics(mesh).jacobian_p01, std::sqrt(0.5), 1e-6);
 }
 
 TEST(MeshStatistics, OfAPlateWithAHole) {

@@ -39,6 +39,7 @@ Json to_json(const MeshStatistics& s) {
             {"max_mean", s.angle_max_mean}}},
           {"edge", {{"mean", s.edge_mean}, {"sigma", s.edge_sigma}}},
           {"inverted_quads", s.inverted_quads},
+          {"scaled_jacobian", {{"min", s.jacobian_min}, {"p01", s.jacobian_p01}}},
           {"components", s.components},
           {"boundary_loops", s.boundary_loops},
           {"non_manifold_edges", s.non_manifold_edges},

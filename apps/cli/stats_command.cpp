@@ -72,6 +72,10 @@ void print(const std::string& name, const MeshStatistics& s,
   line("non-manifold vertices", with_commas(s.non_manifold_vertices));
   line("isolated vertices", with_commas(s.isolated_vertices));
   line("inverted quads", with_commas(s.inverted_quads));
+  if (s.quads > 0) {
+    line("scaled Jacobian",
+         fmt::format("least {:.3f}, first percentile {:.3f}", s.jacobian_min, s.jacobian_p01));
+  }
   if (s.marked_edges > 0) line("marked edges", with_commas(s.marked_edges));
   if (!comparison) return;
   fmt::print("\n  {:<24}{:>10}{:>10}   of the input's diagonal, {:.6g}\n", "distance", "mean",

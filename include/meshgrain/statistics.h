@@ -27,6 +27,9 @@ struct MeshStatistics {
   double angle_min_mean = 0, angle_max_mean = 0;  ///< Means of each face's least and most angle.
   double edge_mean = 0, edge_sigma = 0;           ///< In input units; relative to the mean.
   std::size_t inverted_quads = 0;                 ///< With a corner of 180 degrees or more.
+  /// Of all quads, the least sine of the corners as seen along the quad's normal (its scaled
+  /// Jacobian): the least of these, and what 99 % of the quads exceed; 0 if there are none.
+  double jacobian_min = 0, jacobian_p01 = 0;
   std::size_t components = 0, boundary_loops = 0;
   std::size_t non_manifold_edges = 0;     ///< With more than two faces.
   std::size_t non_manifold_vertices = 0;  ///< Whose faces are more than one fan.

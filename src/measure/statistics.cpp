@@ -77,6 +77,7 @@ void measure_faces(const Mesh& mesh, MeshStatistics& s) {
   Spread areas, angles, least_angles, most_angles;
   double squares = 0;
   std::size_t corners = 0;
+  std::vector<double> jacobians;  // of quads
   Polygon polygon;
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     polygon.set(mesh, mesh.faces[f]);
@@ -85,15 +86,14 @@ void measure_faces(const Mesh& mesh, MeshStatistics& s) {
     areas.add(polygon.area());
     const Point up = polygon.normal().stableNormalized();
     const double regular = 180.0 * (double(n) - 2) / double(n);
-    double least = 360, most = 0;
-    bool inverted = false;
+    double least = 360, most = 0, least_sine = 1;
     for (std::size_t k = 0; k < n; ++k) {
       const Point ahead = (polygon.at(k + 1) - polygon.at(k)).stableNormalized();
       const Point back = (polygon.at(k + n - 1) - polygon.at(k)).stableNormalized();
       const Point turn = ahead.cross(back);
       double angle = std::atan2(turn.norm(), ahead.dot(back)) * 180 / std::numbers::pi;
       if (n > 3 && turn.dot(up) < 0) angle = 360 - angle;  // reflex
-      inverted |= turn.dot(up) <= 0;
+      least_sine = std::min(least_sine, turn.dot(up));
       angles.add(angle);
       least = std::min(least, angle);
       most = std::max(most, angle);
@@ -102,7 +102,15 @@ void measure_faces(const Mesh& mesh, MeshStatistics& s) {
     }
     least_angles.add(least);
     most_angles.add(most);
-    s.inverted_quads += n == 4 && inverted;
+    if (n == 4) jacobians.push_back(least_sine);
+  }
+  if (!jacobians.empty()) {
+    s.inverted_quads = static_cast<std::size_t>(
+        std::ranges::count_if(jacobians, [](double sine) { return sine <= 0; }));
+    s.jacobian_min = std::ranges::min(jacobians);
+    const auto percent = jacobians.begin() + static_cast<std::ptrdiff_t>(jacobians.size() / 100);
+    std::ranges::nth_element(jacobians, percent);
+    s.jacobian_p01 = *percent;
   }
   s.area_sigma = over(areas.sigma(), areas.mean());
   s.area_min = over(areas.least(), areas.mean());
