@@ -289,6 +289,15 @@ class Cancelling {
     for (const Index h : singular_triangles(lattice_)) start(h);
     grow();
   }
+  /// The same, a little farther each time.
+  void start_all_slowly() {
+    waves_.set_reach(0.1f);
+    for (const Index h : singular_triangles(lattice_)) start(h);
+    for (float reach = 0.5f; !waves_.are_grown(); reach *= 1.5f) {
+      waves_.set_reach(reach);
+      grow();
+    }
+  }
   const std::vector<Index>& waves() const { return starts_; }
 
   /// Returns false if no more waves meet.
@@ -439,6 +448,15 @@ TEST(UnitWaves, GrowAsShortestPaths) {
     Cancelling cancelling(c.lattice, radius);
     cancelling.start_all();
     EXPECT_GT(cancelling.waves().size(), 5u);
+    cancelling.expect_fresh();
+  }
+}
+
+TEST(UnitWaves, ComeAsFarInSteps) {
+  for (Case& c : with_creases()) {
+    SCOPED_TRACE(c.name);
+    Cancelling cancelling(c.lattice, radius);
+    cancelling.start_all_slowly();
     cancelling.expect_fresh();
   }
 }

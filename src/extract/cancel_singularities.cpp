@@ -25,8 +25,24 @@ class Cancelling {
     for (Index h = 0; h < lattice_.map.halfedges(); ++h) {
       if (lattice_.stands_for_triangle(h) && is_singular(h)) waves_.start(h);
     }
-    find_meetings();
-    while (!queue_.empty()) {
+    // What is cheap goes before waves have come far: they need not grow over it again.
+    constexpr float first_reach = 2, wider = 1.3f;
+    for (float reach = first_reach;; reach *= wider) {
+      waves_.set_reach(reach);
+      find_meetings();
+      const bool is_last = waves_.are_grown();
+      // A way that is not known yet is at least twice as long as the waves.
+      take_ways(is_last ? most_ : 2 * reach / (2 * most_to_vanish));
+      if (is_last && waves_.are_grown()) return;
+    }
+  }
+
+ private:
+  static constexpr int most_to_vanish = 2;  // irregular vertices, at one end
+
+  /// Those that cost less.
+  void take_ways(double cost_for_each) {
+    while (!queue_.empty() && queue_.top().cost < cost_for_each) {
       const UnitWaves::Meeting meeting = queue_.top().meeting;
       queue_.pop();
       if (const auto ends = waves_.ends(meeting)) {
@@ -38,9 +54,6 @@ class Cancelling {
       find_meetings();
     }
   }
-
- private:
-  static constexpr int most_to_vanish = 2;  // irregular vertices, at one end
 
   struct Place {
     double cost;

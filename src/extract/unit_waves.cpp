@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <utility>
 
+#include "util/sort_unique.h"
+
 namespace meshgrain {
 
 UnitWaves::UnitWaves(const UnitCarrier& carrier, double radius)
     : carrier_(carrier),
       radius_(static_cast<float>(radius)),
+      reach_(radius_),
       labels_(carrier.states()),
       wave_(carrier.triangles(), no_index) {}
 
@@ -19,6 +22,7 @@ void UnitWaves::start(Index h) {
   starts_.push_back(h);
   places_.emplace_back();
   nearest_.emplace_back();
+  contacts_.emplace_back();
   for (int unit = 0; unit < carrier_.units(); ++unit) {
     State out = carrier_.state(h, unit);
     for (int side = 0; side < 3; ++side, out = carrier_.along(out)) visit_from_start(out);
@@ -37,7 +41,23 @@ void UnitWaves::visit(float cost, const State& to, Origin origin, std::uint32_t 
   if (label.cost <= cost) return;
   if (label.cost == never || label.wave() != wave) places_[wave].push_back(number);
   label = Label::of(cost, wave, origin);
-  queue_.push(cost, number);
+  if (cost < reach_) {
+    queue_.push(cost, number);
+  } else {
+    beyond_reach_.push_back({cost, number});
+  }
+}
+
+void UnitWaves::set_reach(float reach) {
+  reach_ = std::min(reach, radius_);
+  for (const auto& [cost, number] : std::exchange(beyond_reach_, {})) {
+    if (labels_[number].cost != cost) continue;
+    if (cost < reach_) {
+      queue_.push(cost, number);
+    } else {
+      beyond_reach_.push_back({cost, number});
+    }
+  }
 }
 
 /// Whether no cheaper way between the same waves is known. Waves have few neighbours.
@@ -74,6 +94,7 @@ void UnitWaves::grow(std::vector<Meeting>& meetings, const Context& context) {
     }
   }
   queue_.clear();
+  meet_at_contacts(meetings);
 }
 
 /// Waves jump about in memory: fetches what will be looked at in a few steps.
@@ -97,6 +118,7 @@ void UnitWaves::meet(const State& in, std::vector<Meeting>& meetings) {
     // Both have paid for the edge.
     const float cost = label.cost + other.cost - carrier_.crossing(carrier_.across(in));
     const auto [older, newer] = std::minmax({label.wave(), other.wave()});
+    contacts_[newer].push_back(label.wave() == newer ? here : there);
     const Meeting meeting{here, there, label.cost, other.cost, cost, newer, older};
     if (is_nearest(meeting)) meetings.push_back(meeting);
   }
@@ -104,6 +126,7 @@ void UnitWaves::meet(const State& in, std::vector<Meeting>& meetings) {
   if (carrier_.gain(in) != 0) return;
   const float cost = label.cost + carrier_.ending(in);
   if (cost == UnitCarrier::forbidden) return;
+  contacts_[label.wave()].push_back(here);
   const Meeting meeting{here, no_index, label.cost, 0, cost, label.wave(), no_index};
   if (is_nearest(meeting)) meetings.push_back(meeting);
 }
@@ -112,6 +135,7 @@ void UnitWaves::take_back(Index h) {
   const std::uint32_t wave =
       std::exchange(wave_[UnitCarrier::triangle(carrier_.state(h, 0))], no_index);
   std::exchange(nearest_[wave], {});
+  std::exchange(contacts_[wave], {});
   for (const std::uint32_t number : std::exchange(places_[wave], {})) {
     if (labels_[number].wave() == wave) forget(number);
   }
@@ -144,9 +168,19 @@ void UnitWaves::meet_again(const Meeting& meeting) {
                       same->there == meeting.there && same->cost == meeting.cost;
   if (!stands) return;  // another one of the same two waves does
   nearest.erase(same);
-  for (const std::uint32_t number : places_[meeting.wave]) {
-    const Label& label = labels_[number];
-    if (label.cost < never && label.wave() == meeting.wave) queue_.push(label.cost, number);
+  unmet_.push_back(meeting.wave);
+}
+
+void UnitWaves::meet_at_contacts(std::vector<Meeting>& meetings) {
+  std::vector<std::uint32_t> waves = std::exchange(unmet_, {});
+  sort_unique(waves);
+  for (const std::uint32_t wave : waves) {
+    std::vector<std::uint32_t> contacts = std::exchange(contacts_[wave], {});
+    sort_unique(contacts);
+    for (const std::uint32_t number : contacts) {
+      const Label& label = labels_[number];
+      if (label.cost < never && label.wave() == wave) meet(carrier_.state(number), meetings);
+    }
   }
 }
 

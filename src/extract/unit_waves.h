@@ -32,6 +32,12 @@ class UnitWaves {
   /// Sends a wave out from the triangle left of h.
   void start(Index h);
 
+  /// From now on waves end at a lower cost, until the next call: whatever costs less than twice of
+  /// it is then known, but for what the last step of a way costs more than that.
+  void set_reach(float reach);
+  /// Whether none would go on beyond the reach.
+  bool are_grown() const { return beyond_reach_.empty(); }
+
   /// Lets waves go on as far as they come, and says where they meet: of each two, the places that
   /// were cheaper than those before.
   void grow(std::vector<Meeting>& meetings, const Context& context);
@@ -74,6 +80,7 @@ class UnitWaves {
 
   void get_ready() const;
   void meet(const State& in, std::vector<Meeting>& meetings);
+  void meet_at_contacts(std::vector<Meeting>& meetings);
   bool is_nearest(const Meeting& meeting);
   void visit(float cost, const State& to, Origin origin, std::uint32_t wave);
   void visit_from_start(const State& out);
@@ -82,13 +89,17 @@ class UnitWaves {
   void come_back_to(std::uint32_t number);
 
   const UnitCarrier& carrier_;
-  float radius_;
+  float radius_, reach_;
   std::vector<Label> labels_;                       // of each state
   std::vector<std::uint32_t> wave_;                 // of each triangle: the one that starts there
   std::vector<Index> starts_;                       // of each wave: a halfedge
   std::vector<std::vector<std::uint32_t>> places_;  // of each wave: states that were its own once
   std::vector<std::uint32_t> forgotten_;            // states that waves could come back to
   std::vector<std::vector<Meeting>> nearest_;       // of each wave: with each older one
+  // Of each wave: states where it has met older ones, or could end.
+  std::vector<std::vector<std::uint32_t>> contacts_;
+  std::vector<std::uint32_t> unmet_;              // waves that must look at their contacts again
+  std::vector<BucketQueue::Entry> beyond_reach_;  // states
   BucketQueue queue_{UnitCarrier::least_step};
 };
 
