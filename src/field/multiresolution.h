@@ -152,7 +152,9 @@ class Multiresolution {
   int sweeps() const {
     if (options_.sweeps > 0) return options_.sweeps;
     constexpr int fine_levels = 3;
-    return options_.multiresolution && level_ < fine_levels ? 2 : 6;
+    constexpr std::size_t large = 30000;  // nodes: with enough levels below the fine ones
+    if (!options_.multiresolution || level_ >= fine_levels) return 6;
+    return hierarchy_.levels[0].size() < large ? 2 : 1;
   }
 
   void enter_level() {
