@@ -49,8 +49,9 @@ void prepare(Pipeline& pipeline, Mesh input) {
   pipeline.clean_up(std::move(input));
   pipeline.sharpen();
   pipeline.refine();
-  pipeline.build_levels();
+  pipeline.build_graph();
   pipeline.find_lines();
+  pipeline.build_levels();
   pipeline.size_faces();
   pipeline.refine_for_sizes();
   pipeline.orient();

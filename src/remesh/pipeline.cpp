@@ -102,12 +102,23 @@ std::vector<Index> Pipeline::put_in_order() {
   return order;
 }
 
+void Pipeline::build_graph() {
+  hierarchy_ = {};
+  hierarchy_.levels.push_back(
+      stage_("graph", [&] { return meshgrain::build_graph(surface_, options_.graph, context_); }));
+  result_.report.nodes = graph().size();
+  result_.report.edges = graph().neighbors.size() / 2;
+}
+
 void Pipeline::build_levels() {
-  Graph finest = stage_("graph", [&] { return build_graph(surface_, options_.graph, context_); });
-  result_.report.nodes = finest.size();
-  result_.report.edges = finest.neighbors.size() / 2;
-  stage_("hierarchy", [&] { hierarchy_ = build_hierarchy(std::move(finest), context_); });
+  stage_("hierarchy",
+         [&] { hierarchy_ = build_hierarchy(std::move(hierarchy_.levels[0]), context_); });
   result_.report.levels = hierarchy_.levels.size();
+}
+
+void Pipeline::drop_coarse_levels() {
+  hierarchy_.levels.resize(1);
+  hierarchy_.parents = {};
 }
 
 void Pipeline::find_lines() {
@@ -208,8 +219,9 @@ void Pipeline::refine_for_sizes() {
     lengths_.values.resize(order.size());
     for (std::size_t i = 0; i < order.size(); ++i) lengths_.values[i] = 2 * longest[order[i]];
   });
-  build_levels();
+  build_graph();
   find_lines();
+  build_levels();
   if (!borders_.empty()) return size_faces();
   lengths_ = graded(graph(), lengths_, growth(), context_);
 }
@@ -249,6 +261,8 @@ void Pipeline::position_and_extract() {
       return given ? transfer_position(*options_.fields, graph(), frame_, context_)
                    : solve_positions();
     });
+    // Another attempt is unlikely then.
+    if (!target_.is_asked_for()) drop_coarse_levels();
     Extraction found = stage_("extraction", [&] { return extract(positions); });
     const double ratio = target_.count_ratio(found.mesh);
     // A few faces too many can be taken away, but not added.
@@ -443,6 +457,7 @@ void Pipeline::finish_borders() {
 }
 
 PositionField Pipeline::solve_positions() {
+  if (hierarchy_.levels.size() < result_.report.levels) build_levels();
   PositionOptions position;
   static_cast<SolverOptions&>(position) = options_.solver;
   position.posy = posy_of(options_.faces);

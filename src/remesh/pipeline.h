@@ -28,8 +28,9 @@ class Pipeline {
 
   /// Fine enough for the target, and in the order of a curve.
   void refine();
-  void build_levels();
+  void build_graph();
   void find_lines();
+  void build_levels();
   void size_faces();
 
   /// Finer still where small faces are wanted.
@@ -80,6 +81,8 @@ class Pipeline {
   void finish_borders();
   double growth() const { return target_.growth(options_.sizing.grading); }
   const Graph& graph() const { return hierarchy_.levels[0]; }
+  /// All but the finest, which together are as large as it.
+  void drop_coarse_levels();
   Fields& fields() { return result_.fields; }
   PositionField solve_positions();
 

@@ -46,6 +46,9 @@ class Target {
   /// pure quads the mesh is the one before it is split.
   double count_ratio(const Mesh& mesh) const;
 
+  /// Whether a count was asked for, and must be met.
+  bool is_asked_for() const { return is_asked_for_ && cells_ > 0; }
+
   /// By which share a count may be off.
   double tolerance() const { return is_asked_for_ ? 0.0095 : 0.05; }
   /// Which share of faces too many may be taken away again: about a row of cells, as one cannot
