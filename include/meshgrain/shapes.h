@@ -27,7 +27,7 @@ std::vector<std::string> sample_names();
 ///     blob          sphere with soft bumps and dents [2]
 ///     plate         flat unit square with a border, facing +z [1]
 ///
-/// Throws Error for an unknown name and for a resolution out of range.
+/// Throws Error for an unknown name, and for a resolution out of range or too coarse for the shape.
 Mesh sample_shape(std::string_view name, double resolution = 1);
 
 /// Moves every vertex by `share` of the mean edge length, each in a direction of its own, as a scan

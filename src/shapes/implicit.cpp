@@ -1,8 +1,10 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
+#include "meshgrain/error.h"
 #include "shapes/makers.h"
 #include "shapes/patches.h"
 
@@ -61,11 +63,26 @@ Point project(Field&& field, Point p) {
   return p;
 }
 
+/// Whether on some side of a cell the corners inside are opposite to each other, so that the
+/// surface could go either way there. Corners are bits: x, y, z.
+template <class Inside>
+bool has_checkered_side(Inside&& inside) {
+  for (int across = 1; across < 8; across <<= 1) {
+    const int u = across == 1 ? 2 : 1, v = across == 4 ? 2 : 4;
+    for (const int c : {0, across}) {
+      const bool a = inside(c), b = inside(c | u), d = inside(c | u | v), e = inside(c | v);
+      if (a == d && b == e && a != b) return true;
+    }
+  }
+  return false;
+}
+
 /// The zero set within a box as quads: one vertex in each grid cell with a change of sign, one quad
-/// around each grid edge with one (Gibson's surface nets, 1998). Manifold where the grid is fine
-/// enough for the field. Walks the grid layer by layer and keeps only two of them.
+/// around each grid edge with one (Gibson's surface nets, 1998). Nothing if the grid is too coarse
+/// for the field to tell what is connected, or a level part of the surface lies just along a layer.
+/// Walks the grid layer by layer and keeps only two of them.
 template <class Field>
-Mesh surface_net(Field&& field, const Point& low, const Point& high, double step) {
+std::optional<Mesh> surface_net(Field&& field, const Point& low, const Point& high, double step) {
   const Eigen::Vector3i n = ((high - low) / step).array().ceil().cast<int>();
   const int row = n.x() + 1;
   const auto node = [&](int i, int j, int k) { return Point(low + step * Point(i, j, k)); };
@@ -93,6 +110,7 @@ Mesh surface_net(Field&& field, const Point& low, const Point& high, double step
         const auto corner = [&](int c) {
           return value[c >> 2][(j + (c >> 1 & 1)) * row + i + (c & 1)];
         };
+        if (has_checkered_side([&](int c) { return corner(c) < 0; })) return std::nullopt;
         Point sum = Point::Zero();
         int crossings = 0;
         for (int c = 0; c < 8; ++c)
@@ -148,8 +166,16 @@ void relax(Mesh& mesh, Field&& field, int rounds) {
 }  // namespace
 
 Mesh three_holes(double resolution) {
-  Mesh net = surface_net(three_holes_field, Point(-1.4, -1.4, -0.4), Point(1.4, 1.4, 0.4),
-                         0.035 / resolution);
+  const double step = 0.035 / resolution;
+  Point low(-1.4, -1.4, -0.4);
+  std::optional<Mesh> found;
+  for (int attempt = 0; !found; ++attempt) {
+    constexpr int attempts = 8;
+    if (attempt == attempts) throw Error("three-holes cannot be sampled as coarsely as this");
+    found = surface_net(three_holes_field, low, Point(1.4, 1.4, 0.4), step);
+    low.z() -= step / attempts;
+  }
+  Mesh& net = *found;
   relax(net, three_holes_field, 6);
   Mesh mesh;
   mesh.positions = std::move(net.positions);
