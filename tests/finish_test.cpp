@@ -214,6 +214,30 @@ TEST(Finish, EdgesCutOffLessOfARaggedLine) {
   }
 }
 
+/// Holes no larger than a few faces: at a corner of the mesh on their rim, all but a quarter of the
+/// way around it may belong to the surface, which one face alone cannot span.
+TEST(Finish, RimsOfSmallHolesHaveSoundFaces) {
+  const Mesh whole = sample_shape("blob");
+  for (const float radius : {0.04f, 0.06f}) {
+    Mesh shape;
+    shape.positions = whole.positions;
+    const auto in_a_hole = [&](Index v) {
+      const Vec3 direction = whole.positions[v].normalized();
+      const float farthest = direction.cwiseAbs().maxCoeff();
+      return 2 - 2 * farthest < radius * radius;  // of the nearest axis
+    };
+    for (std::size_t f = 0; f < whole.faces.size(); ++f) {
+      if (std::ranges::none_of(whole.faces[f], in_a_hole)) shape.faces.push_back(whole.faces[f]);
+    }
+    for (const std::size_t count : {2000, 4000, 9000}) {
+      SCOPED_TRACE(count);
+      const MeshStatistics s = mesh_statistics(remeshed(shape, count));
+      EXPECT_EQ(s.boundary_loops, 6u);
+      EXPECT_GT(s.jacobian_min, 0.1);
+    }
+  }
+}
+
 /// A ball with a horn about as thick as a face of the target is large.
 TEST(Finish, HornsAreReached) {
   std::vector<std::array<double, 2>> profile;

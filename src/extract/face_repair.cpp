@@ -81,21 +81,28 @@ void FaceRepair::part_straight_angles() {
   for (Index h = 0; h < map_.halfedges(); ++h) {
     if (map_.removed(h) || hole_[h]) continue;
     if (!is_straight(h, map_.prev(h), face_normal(h))) continue;
-    if ((map_.degree(h) == 3 && !make_room(h)) || !part_face(h)) add_hub(h);
+    if ((map_.degree(h) != 3 || make_room(h)) && part_face(h)) continue;
+    const Index across = map_.next(h);
+    add_hub(h);
+    // The neighbours of the origin of h keep as many edges as they had.
+    if (may_remove(across)) map_.remove_edge(across);
   }
+}
+
+bool FaceRepair::may_remove(Index h) const {
+  const Index t = PolygonMap::twin(h);
+  return !hole_[h] && !hole_[t] && line(h) == no_index && !is_last_rung(h) && !is_last_rung(t) &&
+         map_.valence(map_.origin(h)) > 3 && map_.valence(map_.target(h)) > 3 && !touches_itself(h);
 }
 
 /// Joins a triangle with the face opposite to the origin of h, if the edge between them may go.
 bool FaceRepair::make_room(Index h) {
   const Index across = map_.next(h), beyond = PolygonMap::twin(across);
-  const bool fixed = hole_[beyond] || line(across) != no_index || is_last_rung(across) ||
-                     is_last_rung(beyond) || map_.valence(map_.origin(across)) <= 3 ||
-                     map_.valence(map_.target(across)) <= 3 || touches_itself(across);
   bool has_goal = false;
   for (Index g = map_.next(map_.next(beyond)); g != beyond; g = map_.next(g)) {
     has_goal = has_goal || !map_.adjacent(map_.origin(h), map_.origin(g));
   }
-  if (fixed || !has_goal) return false;
+  if (!has_goal || !may_remove(across)) return false;
   map_.remove_edge(across);
   return true;
 }

@@ -106,6 +106,8 @@ class FaceRepair {
   /// `from`, has a straight angle there. `normal` is that of the face.
   bool is_straight(Index to, Index from, const Vec3& normal) const;
   Vec3 face_normal(Index h) const;
+  /// Whether the faces beside an edge may become one.
+  bool may_remove(Index h) const;
   bool make_room(Index h);
   bool part_face(Index h);
   /// By how much the number of irregular vertices falls if the origin of h and the corner opposite
