@@ -444,8 +444,8 @@ TEST_F(Cli, MemoryIsEstimatedFromAbove) {
   write_mesh(folder_ / "cloud.ply", cloud);
   for (const char* options :
        {"mesh.ply", "mesh.ply -f 10000", "mesh.ply -D -f 4000", "mesh.ply -p 6 -f 10000",
-        "mesh.ply --adaptive 1 -f 8000", "mesh.ply --regularity 1 -f 10000", "coarse.ply -f 40000",
-        "mesh.ply --graph faces -f 8000", "cloud.ply", "cloud.ply -k 20"}) {
+        "mesh.ply -f 200", "mesh.ply --adaptive 1 -f 8000", "mesh.ply --regularity 1 -f 10000",
+        "coarse.ply -f 40000", "mesh.ply --graph faces -f 8000", "cloud.ply", "cloud.ply -k 20"}) {
     const std::string command = std::string(options) + " -o out.ply -t 2 --quiet";
     run_well(command + " --report report.json");
     const auto peak = json::parse(read("report.json"))["peak_memory_bytes"].get<double>();

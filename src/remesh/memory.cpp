@@ -18,7 +18,10 @@ namespace {
 // In bytes, fitted to measured runs (Cli.MemoryIsEstimatedFromAbove holds them to it).
 constexpr double program = 11 << 20, thread = 1 << 20;
 constexpr double node_of_vertex = 330, node_of_face = 260;  // with its part of all levels
-constexpr double point = 130, neighbor = 32;                // of a cloud, each of its neighbours
+constexpr double coarse_levels = 60;  // of the former: they go where no count was asked for
+// More, in cells of so many vertices, many of which collapse one by one.
+constexpr double node_of_large_cell = 130, large_cell = 500;
+constexpr double point = 130, neighbor = 32;  // of a cloud, each of its neighbours
 constexpr double input_vertex = 12, input_corner = 4;
 constexpr double written_corner = 65;
 constexpr double far_waves = 75;    // more, where singularities are cancelled however far apart
@@ -101,7 +104,11 @@ Need needed_by_mesh(const Mesh& input, const RemeshOptions& options, const Targe
   const double written = area / target.face_area(area) * bytes_of_written_face(options);
   // Two triangles come with each vertex that is put between others.
   if (options.graph.nodes == GraphNodes::vertices) {
-    return {vertices * node_of_vertex, added / 2 * node_of_vertex + written};
+    const double length = target.edge_length(area);
+    const bool is_large = (vertices + added / 2) * length * length > large_cell * area;
+    const double node = node_of_vertex - (target.is_asked_for() ? 0 : coarse_levels) +
+                        (is_large ? node_of_large_cell : 0);
+    return {vertices * node, added / 2 * node + written};
   }
   return {triangles * node_of_face, added * node_of_face + written};
 }
