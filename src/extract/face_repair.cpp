@@ -84,8 +84,8 @@ void FaceRepair::part_straight_angles() {
     if ((map_.degree(h) != 3 || make_room(h)) && part_face(h)) continue;
     const Index across = map_.next(h);
     add_hub(h);
-    // The neighbours of the origin of h keep as many edges as they had.
-    if (may_remove(across)) map_.remove_edge(across);
+    // Among quads, the neighbours of the origin of h keep as many edges as they had.
+    if (posy_ == 4 && may_remove(across)) map_.remove_edge(across);
   }
 }
 
