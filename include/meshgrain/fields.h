@@ -78,7 +78,7 @@ enum class Schedule {
 
 struct SolverOptions {
   /// Gauss-Seidel sweeps on each level. 0: the paper's six (section 3.5), but on each of the three
-  /// finest levels only one, or two of small meshes, as more change nothing there that could be
+  /// finest levels only one, or two below 30,000 nodes, as more change nothing there that could be
   /// measured.
   int sweeps = 0;
   Schedule schedule = Schedule::blocks;

@@ -31,8 +31,8 @@ class Cancelling {
       waves_.set_reach(reach);
       find_meetings();
       const bool is_last = waves_.are_grown();
-      // A way that is not known yet is at least twice as long as the waves.
-      take_ways(is_last ? most_ : 2 * reach / (2 * most_to_vanish));
+      // A way that is not known yet costs at least twice as much, at both ends together.
+      take_ways(is_last ? most_ : reach / most_to_vanish);
       if (is_last && waves_.are_grown()) return;
     }
   }

@@ -57,10 +57,7 @@ void FaceRepair::remove_diagonals(std::span<const Jump> jumps) {
     for (Index g : {h, map_.next(h), map_.prev(h)}) count[h] += is_diagonal(g);
   }
   const auto remove = [&](Index h, std::size_t most) {
-    if (line(h) != no_index || map_.degree(h) + map_.degree(h + 1) - 2 > most) return;
-    if (map_.valence(map_.origin(h)) <= 3 || map_.valence(map_.target(h)) <= 3) return;
-    if (is_last_rung(h) || is_last_rung(PolygonMap::twin(h))) return;
-    if (!touches_itself(h)) map_.remove_edge(h);
+    if (map_.degree(h) + map_.degree(h + 1) - 2 <= most && may_remove(h)) map_.remove_edge(h);
   };
   for (const int most : {2, 3, 4}) {
     for (Index h = 0; h < 2 * jumps.size(); h += 2) {

@@ -140,27 +140,18 @@ float UnitCarrier::crossing(const State& out) const {
                         : forbidden;
 }
 
-/// `worse`: what becomes of the triangle.
-double UnitCarrier::step_cost(const State& out, double worse) const {
-  return crossing(out) + std::max(worse, 0.0);
-}
-
 float UnitCarrier::leaving(const State& out) const {
   LatticeTriangle triangle = lattice_.triangle(halfedge(out));
-  const LatticeTriangle before = triangle;
   triangle.around[0] = left(out);
-  if (moves_apex(halfedge(out), before, triangle)) return forbidden;
-  return static_cast<float>(step_cost(out, triangle.misfit() - before.misfit()));
+  return static_cast<float>(crossing(out) + worsening(halfedge(out), triangle));
 }
 
 float UnitCarrier::ending(const State& in) const {
   const Index h = halfedge(in);
   if (lattice_.holes[h]) return 0;
   LatticeTriangle triangle = lattice_.triangle(h);
-  const LatticeTriangle before = triangle;
   triangle.around[0] = entered(in);
-  if (moves_apex(h, before, triangle)) return forbidden;
-  return static_cast<float>(std::max(0.0, triangle.misfit() - before.misfit()));
+  return static_cast<float>(worsening(h, triangle));
 }
 
 std::array<float, 2> UnitCarrier::passing(const State& in) const {
@@ -185,23 +176,21 @@ std::array<float, 2> UnitCarrier::passing(const State& in) const {
 /// `out` is at a corner of the triangle, as seen from that of `in`.
 float UnitCarrier::passing_slowly(const State& in, const State& out, std::size_t corner) const {
   LatticeTriangle triangle = lattice_.triangle(halfedge(in));
-  const LatticeTriangle before = triangle;
   triangle.around[0] = entered(in);
   triangle.around[corner] = left(out);
-  if (moves_apex(halfedge(in), before, triangle)) return forbidden;
-  return static_cast<float>(step_cost(out, triangle.misfit() - before.misfit()));
+  return static_cast<float>(crossing(out) + worsening(halfedge(in), triangle));
 }
 
-/// Whether a cone around a corner of the features, a triangle from h on, would be around another
-/// point of the lattice.
-bool UnitCarrier::moves_apex(Index h, const LatticeTriangle& before,
-                             const LatticeTriangle& after) const {
-  if (!before.is_cone()) return false;
-  for (int k = 0; k < 3; ++k, h = map_.next(h)) {
-    if (lattice_.hold[map_.origin(h)] != at_corner) continue;
-    if (before.sum(k).is_zero() && !after.sum(k).is_zero()) return true;
+/// What it costs a triangle from h on to become another.
+double UnitCarrier::worsening(Index h, const LatticeTriangle& after) const {
+  const LatticeTriangle before = lattice_.triangle(h);
+  if (before.is_cone()) {
+    for (int k = 0; k < 3; ++k, h = map_.next(h)) {
+      if (lattice_.hold[map_.origin(h)] != at_corner) continue;
+      if (before.sum(k).is_zero() && !after.sum(k).is_zero()) return forbidden;
+    }
   }
-  return false;
+  return std::max(0.0, after.misfit() - before.misfit());
 }
 
 }  // namespace meshgrain

@@ -127,9 +127,8 @@ class UnitCarrier {
   float crossing(const std::array<float, 2>& excess, const std::array<int, 2>& unit) const;
   void look_at(Index h, Triangle& triangle) const;
   std::optional<int> gain_of_singular(const State& in) const;
-  double step_cost(const State& out, double worse) const;
+  double worsening(Index h, const LatticeTriangle& after) const;
   float passing_slowly(const State& in, const State& out, std::size_t corner) const;
-  bool moves_apex(Index h, const LatticeTriangle& before, const LatticeTriangle& after) const;
   void weigh_lines();
 
   const LatticeMesh& lattice_;

@@ -41,22 +41,21 @@ void UnitWaves::visit(float cost, const State& to, Origin origin, std::uint32_t 
   if (label.cost <= cost) return;
   if (label.cost == never || label.wave() != wave) places_[wave].push_back(number);
   label = Label::of(cost, wave, origin);
-  if (cost < reach_) {
-    queue_.push(cost, number);
+  put_in_line({cost, number});
+}
+
+void UnitWaves::put_in_line(const BucketQueue::Entry& entry) {
+  if (entry.cost < reach_) {
+    queue_.push(entry.cost, entry.item);
   } else {
-    beyond_reach_.push_back({cost, number});
+    beyond_reach_.push_back(entry);
   }
 }
 
 void UnitWaves::set_reach(float reach) {
   reach_ = std::min(reach, radius_);
-  for (const auto& [cost, number] : std::exchange(beyond_reach_, {})) {
-    if (labels_[number].cost != cost) continue;
-    if (cost < reach_) {
-      queue_.push(cost, number);
-    } else {
-      beyond_reach_.push_back({cost, number});
-    }
+  for (const BucketQueue::Entry& entry : std::exchange(beyond_reach_, {})) {
+    if (labels_[entry.item].cost == entry.cost) put_in_line(entry);
   }
 }
 

@@ -32,8 +32,8 @@ class UnitWaves {
   /// Sends a wave out from the triangle left of h.
   void start(Index h);
 
-  /// From now on waves end at a lower cost, until the next call: whatever costs less than twice of
-  /// it is then known, but for what the last step of a way costs more than that.
+  /// Until the next call waves end at this cost already. Ways between two of them that cost less
+  /// than twice as much are then found, but for a few with a dear step in their middle.
   void set_reach(float reach);
   /// Whether none would go on beyond the reach.
   bool are_grown() const { return beyond_reach_.empty(); }
@@ -84,6 +84,7 @@ class UnitWaves {
   bool is_nearest(const Meeting& meeting);
   void visit(float cost, const State& to, Origin origin, std::uint32_t wave);
   void visit_from_start(const State& out);
+  void put_in_line(const BucketQueue::Entry& entry);
   void forget(std::uint32_t number);
   void forget_beyond(std::uint32_t number);
   void come_back_to(std::uint32_t number);

@@ -106,7 +106,7 @@ Need needed_by_mesh(const Mesh& input, const RemeshOptions& options, const Targe
   if (options.graph.nodes == GraphNodes::vertices) {
     const double length = target.edge_length(area);
     const bool is_large = (vertices + added / 2) * length * length > large_cell * area;
-    const double node = node_of_vertex - (target.is_asked_for() ? 0 : coarse_levels) +
+    const double node = node_of_vertex - (target.must_be_met() ? 0 : coarse_levels) +
                         (is_large ? node_of_large_cell : 0);
     return {vertices * node, added / 2 * node + written};
   }

@@ -257,12 +257,13 @@ void Pipeline::position_and_extract() {
   // were for it, all attempts together: a single one may be off by as much as a row of cells.
   double asked = 0, excess = 0;
   for (int attempt = 0; attempt < attempts; ++attempt) {
+    if (hierarchy_.levels.size() < result_.report.levels) build_levels();  // again
     PositionField positions = stage_("position field", [&] {
       return given ? transfer_position(*options_.fields, graph(), frame_, context_)
                    : solve_positions();
     });
     // Another attempt is unlikely then.
-    if (!target_.is_asked_for()) drop_coarse_levels();
+    if (!target_.must_be_met()) drop_coarse_levels();
     Extraction found = stage_("extraction", [&] { return extract(positions); });
     const double ratio = target_.count_ratio(found.mesh);
     // A few faces too many can be taken away, but not added.
@@ -457,7 +458,6 @@ void Pipeline::finish_borders() {
 }
 
 PositionField Pipeline::solve_positions() {
-  if (hierarchy_.levels.size() < result_.report.levels) build_levels();
   PositionOptions position;
   static_cast<SolverOptions&>(position) = options_.solver;
   position.posy = posy_of(options_.faces);

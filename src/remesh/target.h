@@ -46,8 +46,8 @@ class Target {
   /// pure quads the mesh is the one before it is split.
   double count_ratio(const Mesh& mesh) const;
 
-  /// Whether a count was asked for, and must be met.
-  bool is_asked_for() const { return is_asked_for_ && cells_ > 0; }
+  /// Whether a count was asked for: not by length, and not by default.
+  bool must_be_met() const { return is_asked_for_ && cells_ > 0; }
 
   /// By which share a count may be off.
   double tolerance() const { return is_asked_for_ ? 0.0095 : 0.05; }
