@@ -69,7 +69,7 @@ TEST(Features, NothingIsFoundOnRoundShapes) {
 TEST(Features, CreasesAndCornersAreKept) {
   for (const char* name : {"cube", "cylinder", "bracket", "twisted-cube", "shaft"}) {
     const Mesh input = sample_shape(name);
-    for (const std::size_t count : {1500, 5000}) {
+    for (const std::size_t count : {1000, 1500, 5000}) {
       for (const OutputFaces faces :
            {OutputFaces::quads, OutputFaces::quad_dominant, OutputFaces::triangles}) {
         SCOPED_TRACE(std::string(name) + " " + std::to_string(count) + " " +
@@ -84,6 +84,35 @@ TEST(Features, CreasesAndCornersAreKept) {
         EXPECT_EQ(kept.corners, 1);
       }
     }
+  }
+}
+
+/// The largest angle between neighbours among the points on the circle of the shaft's upper end.
+double widest_step_around(const Mesh& mesh) {
+  std::vector<double> angles;
+  for (const Vec3& p : mesh.positions) {
+    const double radius = std::hypot(p.x(), p.z());
+    if (p.y() > 0.999f && radius > 0.096) angles.push_back(std::atan2(p.z(), p.x()));
+  }
+  if (angles.empty()) return 2 * std::numbers::pi;
+  std::sort(angles.begin(), angles.end());
+  double widest = angles.front() + 2 * std::numbers::pi - angles.back();
+  for (std::size_t i = 1; i < angles.size(); ++i)
+    widest = std::max(widest, angles[i] - angles[i - 1]);
+  return widest;
+}
+
+/// Faces are nearly as large as the radius of the smallest circle.
+TEST(Features, SmallCirclesStayCircles) {
+  const Mesh input = sample_shape("shaft");
+  for (const std::size_t count : {400, 500, 600, 700, 800, 1000}) {
+    SCOPED_TRACE(count);
+    RemeshOptions options;
+    options.face_count = count;
+    const Mesh output = remesh(input, options).mesh;
+    EXPECT_NEAR(static_cast<double>(output.faces.size()), static_cast<double>(count),
+                0.01 * static_cast<double>(count));
+    EXPECT_LT(widest_step_around(output), count == 400 ? 1.25 : 1.05);
   }
 }
 

@@ -10,6 +10,8 @@
 
 #include "finish/crossings.h"
 #include "finish/fit_to_rails.h"
+#include "finish/go_around.h"
+#include "mesh/vertex_faces.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
 #include "meshgrain/statistics.h"
@@ -167,6 +169,97 @@ TEST(Finish, ChordsKnowWhichEndIsMeant) {
   EXPECT_EQ(chords.cut_off(3), 0);
   loop.mesh.positions[3] = {0, 0.5f, 0};
   EXPECT_GT(chords.cut_off(3), 0.02);
+}
+
+/// A circle of radius 1 in 60 parts, and a cone over a chain of edges around it, seen from above.
+struct Ring {
+  explicit Ring(const std::vector<double>& degrees) : line(circle()), cone(cone_over(degrees)) {}
+
+  static constexpr Index parts = 60;
+  static FeatureLines circle() {
+    FeatureLines line;
+    for (Index k = 0; k <= parts; ++k) {
+      line.vertices.push_back(k % parts);
+      line.positions.push_back(at(360.0 * (k % parts) / parts));
+    }
+    line.starts.push_back(parts + 1);
+    return line;
+  }
+  static Extraction cone_over(const std::vector<double>& degrees) {
+    Extraction cone;
+    const auto count = static_cast<Index>(degrees.size());
+    for (Index k = 0; k < count; ++k) {
+      cone.mesh.positions.push_back(at(degrees[k]));
+      cone.mesh.faces.push_back({k, (k + 1) % count, count});
+      cone.nodes.push_back(static_cast<Index>(degrees[k] / 360 * parts));
+      cone.line_edges.push_back({k, (k + 1) % count, 0});
+    }
+    cone.mesh.positions.emplace_back(0, 0, 1);
+    cone.nodes.push_back(parts);
+    return cone;
+  }
+  static Vec3 at(double degrees) {
+    const double angle = degrees * std::numbers::pi / 180;
+    return {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), 0};
+  }
+  Index count() const { return static_cast<Index>(cone.line_edges.size()); }
+  /// From a vertex to the next.
+  double step(Index v) const {
+    const auto angle = [&](Index w) {
+      const Vec3& p = cone.mesh.positions[w];
+      return std::atan2(p.y(), p.x()) * 180 / std::numbers::pi;
+    };
+    const double step = angle((v + 1) % count()) - angle(v);
+    return step < 0 ? step + 360 : step;
+  }
+  void go_around() {
+    const auto upward = [](Index) { return Vec3(0, 0, 1); };
+    meshgrain::go_around(cone.mesh, vertex_faces(cone.mesh), upward, chords, rails);
+  }
+
+  FeatureLines line;
+  Extraction cone;
+  Rails rails{cone, line};
+  Chords chords{cone.mesh, cone.line_edges, rails};
+};
+
+/// The middle of the edge that goes the long way around is on the wrong side at first; or all goes
+/// the wrong way.
+TEST(Finish, ClosedLinesAreFollowedAround) {
+  for (const auto& start : {std::vector<double>{80, 90, 100, 113, 126, 150, 193, 137},
+                            std::vector<double>{137, 193, 150, 126, 113, 100, 90, 80}}) {
+    Ring ring(start);
+    ring.go_around();
+    for (Index v = 0; v < ring.count(); ++v) EXPECT_NEAR(ring.step(v), 45, 0.5) << v;
+  }
+  // Those that do follow it stay.
+  Ring ring({0, 30, 150, 200, 300});
+  const auto before = ring.cone.mesh.positions;
+  ring.go_around();
+  EXPECT_EQ(ring.cone.mesh.positions, before);
+}
+
+/// All of them try to be where one is.
+TEST(Finish, VerticesSlideInOrder) {
+  Ring ring({0, 50, 90, 150, 200, 300});
+  ring.go_around();
+  for (int round = 0; round < 50; ++round) {
+    ring.chords.note_ways(Context());
+    std::vector<Vec3> next = ring.cone.mesh.positions;
+    for (Index v = 0; v < ring.count(); ++v) {
+      const auto stop = ring.chords.slide(v, ring.rails.project(Ring::at(120), v));
+      ASSERT_TRUE(stop) << v;
+      ring.rails.set_place(v, stop->segment);
+      next[v] = stop->position;
+    }
+    ring.cone.mesh.positions = next;
+    double around = 0;
+    for (Index v = 0; v < ring.count(); ++v) {
+      around += ring.step(v);
+      ASSERT_LT(ring.step(v), 240) << round;
+    }
+    ASSERT_NEAR(around, 360, 1e-3) << round;
+  }
 }
 
 /// A row of quads whose lower side follows a line with spikes.

@@ -25,6 +25,9 @@ struct ExtractOptions {
   /// over edges of squared changes, in edge lengths, and over the faces that these spoil. 0: none;
   /// infinity: all position singularities go.
   double cancelling_cost = 8;
+  /// The same where the target edge length varies: rows must end there, each at a pair of irregular
+  /// vertices.
+  double cancelling_cost_where_graded = 3;
   /// Edges of the graph that lie on the border of the surface: where the output is open. Without
   /// any, gaps that the walk leaves are closed.
   std::vector<std::array<Index, 2>> border;

@@ -1,5 +1,7 @@
 #include "extract/cancel_singularities.h"
 
+#include <algorithm>
+#include <limits>
 #include <queue>
 #include <tuple>
 #include <vector>
@@ -13,13 +15,12 @@ namespace {
 /// Takes the cheapest way of all, then the cheapest of those that are left, and so on.
 class Cancelling {
  public:
-  /// `most`: what may be spent for each irregular vertex that goes.
-  Cancelling(LatticeMesh& lattice, double most, const Context& context)
+  Cancelling(LatticeMesh& lattice, const CancellingCost& most, const Context& context)
       : lattice_(lattice),
         most_(most),
         context_(context),
         carrier_(lattice, context),
-        waves_(carrier_, most_to_vanish * most) {}
+        waves_(carrier_, most_to_vanish * std::max(most.usual, most.where_graded)) {}
 
   void run() {
     for (Index h = 0; h < lattice_.map.halfedges(); ++h) {
@@ -32,7 +33,7 @@ class Cancelling {
       find_meetings();
       const bool is_last = waves_.are_grown();
       // A way that is not known yet costs at least twice as much, at both ends together.
-      take_ways(is_last ? most_ : reach / most_to_vanish);
+      take_ways(is_last ? std::numeric_limits<double>::infinity() : reach / most_to_vanish);
       if (is_last && waves_.are_grown()) return;
     }
   }
@@ -78,6 +79,12 @@ class Cancelling {
     return double{meeting.cost} / gone;
   }
 
+  double most_for(const UnitWaves::Ends& ends) const {
+    const bool graded =
+        lattice_.is_graded(ends.from) || (ends.to != no_index && lattice_.is_graded(ends.to));
+    return graded ? most_.where_graded : most_.usual;
+  }
+
   void start_again(const UnitWaves::Ends& ends) {
     for (const Index h : {ends.from, ends.to}) {
       if (h == no_index) continue;
@@ -98,7 +105,7 @@ class Cancelling {
           continue;
         }
         const double cost = cost_for_each(meeting, *ends);
-        if (cost < most_) queue_.push({cost, meeting});
+        if (cost < most_for(*ends)) queue_.push({cost, meeting});
       }
     } while (!meetings.empty());
   }
@@ -137,7 +144,7 @@ class Cancelling {
   }
 
   LatticeMesh& lattice_;
-  double most_;
+  CancellingCost most_;
   const Context& context_;
   UnitCarrier carrier_;
   UnitWaves waves_;
@@ -146,8 +153,9 @@ class Cancelling {
 
 }  // namespace
 
-void cancel_position_singularities(LatticeMesh& lattice, double cost, const Context& context) {
-  if (cost > 0) Cancelling(lattice, cost, context).run();
+void cancel_position_singularities(LatticeMesh& lattice, const CancellingCost& most,
+                                   const Context& context) {
+  if (std::max(most.usual, most.where_graded) > 0) Cancelling(lattice, most, context).run();
 }
 
 }  // namespace meshgrain

@@ -4,12 +4,19 @@
 
 namespace meshgrain {
 
+/// What may be spent for each irregular vertex that goes away.
+struct CancellingCost {
+  double usual;
+  double where_graded;  ///< At singularities where the target edge length varies.
+};
+
 /// Removes position singularities by changing integers along paths from one to another, to a
-/// singularity of the orientation field, or to the border; the cheapest first. `cost` is the most
-/// that may be spent for each irregular vertex that goes away: the sum over the edges crossed of
+/// singularity of the orientation field, or to the border; the cheapest first. What it
+/// costs: the sum over the edges crossed of
 /// how much farther (squared, in edge lengths) the new jump is from the real distance of the ends,
 /// and over the triangles passed of how much more is wrong with them (LatticeTriangle::misfit()).
 /// To cross an edge of a short feature line costs several times that.
-void cancel_position_singularities(LatticeMesh& lattice, double cost, const Context& context);
+void cancel_position_singularities(LatticeMesh& lattice, const CancellingCost& most,
+                                   const Context& context);
 
 }  // namespace meshgrain

@@ -164,7 +164,8 @@ Extraction extract_from_mesh(const Graph& graph, const OrientationField& orienta
   LatticeMesh lattice(std::move(collapsed.lattice), std::move(collapsed.clusters), collapsed.roots,
                       graph, orientation, position);
   repair_lattice(lattice, context);
-  cancel_position_singularities(lattice, options.cancelling_cost, context);
+  cancel_position_singularities(
+      lattice, {options.cancelling_cost, options.cancelling_cost_where_graded}, context);
   repair_lattice(lattice, context);
   lattice.clusters.hold = std::move(lattice.hold);
   FaceRepair repair(lattice.map, lattice.clusters, position.posy, std::move(lattice.holes),

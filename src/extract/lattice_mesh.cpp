@@ -43,6 +43,13 @@ LatticePoint LatticeMesh::real_jump(Index h) const {
   return {x * scale, y * scale};
 }
 
+bool LatticeMesh::is_graded(Index h) const {
+  const auto [least, most] = std::minmax(
+      {lengths_[map.origin(h)], lengths_[map.target(h)], lengths_[map.target(map.next(h))]});
+  constexpr float considerably = 1.001f;
+  return most > considerably * least;
+}
+
 double LatticeMesh::misfit(Index h, const std::array<int, 2>& t) const {
   const LatticePoint real = real_jump(h);
   return metric().squared_length(LatticePoint{t[0] - real[0], t[1] - real[1]});

@@ -31,6 +31,8 @@ class LatticeMesh : public JumpMap {
   LatticeTriangle triangle(Index h) const {
     return {posy, {jump(h), jump(map.next(h)), jump(map.prev(h))}};
   }
+  /// Whether the target edge length varies over that triangle.
+  bool is_graded(Index h) const;
   /// Whether h has a triangle on its left, and is the halfedge that stands for it.
   bool stands_for_triangle(Index h) const {
     return !map.removed(h) && !holes[h] && h < map.next(h) && h < map.prev(h);

@@ -8,6 +8,7 @@
 
 #include "field/bending.h"
 #include "graph/spread.h"
+#include "mesh/border.h"
 #include "meshgrain/error.h"
 
 namespace meshgrain {
@@ -84,6 +85,31 @@ std::vector<float> lengths_by_bending(const Hierarchy& hierarchy, const Mesh& su
   return lengths;
 }
 
+/// Circles of holes and shafts need some edges to be circles, however large the other faces are.
+/// Returns whether any of them has made a length shorter.
+bool shorten_around_lines(std::vector<float>& lengths, const Mesh& surface,
+                          const FeatureLines& lines, double face_side) {
+  constexpr double shortest = 0.25;
+  bool any = false;
+  const auto shorten = [&](Index node, double longest) {
+    const auto length = static_cast<float>(std::max(longest / face_side, shortest));
+    if (length >= lengths[node]) return;
+    lengths[node] = length;
+    any = true;
+  };
+  std::vector<std::uint8_t> on_border(lengths.size(), 0);
+  for (const auto& [a, b] : border_edges(surface)) on_border[a] = on_border[b] = 1;
+  // An edge as long as half the radius leaves a circle by what Chords tolerate. Borders are less
+  // exact and often ragged: what turns within a face's side is no circle.
+  for_each_turn(lines, face_side / 2, [&](Index node, double bend) {
+    if (!on_border[node]) shorten(node, 0.5 / bend);
+  });
+  for_each_turn(lines, face_side, [&](Index node, double bend) {
+    if (on_border[node]) shorten(node, 1.2 / bend);
+  });
+  return any;
+}
+
 void multiply_by_values(std::vector<float>& lengths, const std::vector<float>& values,
                         const Sizing& sizing) {
   if (values.size() != lengths.size()) throw Error("sizes by value need one value a vertex");
@@ -116,7 +142,6 @@ void multiply_by_distance(std::vector<float>& lengths, const Graph& graph, const
 EdgeLength relative_edge_lengths(const Hierarchy& hierarchy, const Mesh& surface,
                                  const FeatureLines& creases, const Sizing& sizing,
                                  double face_side, const Context& context) {
-  if (sizing.is_uniform()) return EdgeLength(1.0f);
   if (!(sizing.ratio >= 1)) throw Error("the ratio of edge lengths must be at least 1");
   if (!(sizing.adaptive >= 0 && sizing.adaptive <= 1)) {
     throw Error("the adaptivity of sizes must lie between 0 and 1");
@@ -131,6 +156,8 @@ EdgeLength relative_edge_lengths(const Hierarchy& hierarchy, const Mesh& surface
   } else if (sizing.kind != Sizing::Kind::uniform) {
     multiply_by_values(lengths, surface.values, sizing);
   }
+  const bool is_shortened = shorten_around_lines(lengths, surface, creases, face_side);
+  if (sizing.is_uniform() && !is_shortened) return EdgeLength(1.0f);
   return EdgeLength(std::move(lengths));
 }
 

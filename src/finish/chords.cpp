@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "util/triangle.h"
@@ -20,7 +21,8 @@ Chords::Chords(const Mesh& mesh, std::span<const LineEdge> edges, const Rails& r
       rails_(rails),
       ways_(rails.lines().vertices.size(), 0),
       beside_(mesh.positions.size(), {no_index, no_index}),
-      line_(mesh.positions.size(), no_index) {
+      line_(mesh.positions.size(), no_index),
+      goes_around_(mesh.positions.size(), 0) {
   for (Index line = 0; line < lines().size(); ++line) {
     for (Index k = lines().begin(line) + 1; k < lines().end(line); ++k) {
       ways_[k] = ways_[k - 1] + (lines().positions[k] - lines().positions[k - 1]).norm();
@@ -36,8 +38,7 @@ Chords::Chords(const Mesh& mesh, std::span<const LineEdge> edges, const Rails& r
   }
 }
 
-std::optional<double> Chords::way(Index v, Index line, double near) const {
-  const Vec3& p = mesh_.positions[v];
+std::optional<double> Chords::way(Index v, const Vec3& p, Index line, double near) const {
   const auto nearest = [&](double way) {
     if (!lines().is_closed(line)) return way;
     return near + std::remainder(way - near, length(line));
@@ -65,6 +66,63 @@ Chords::Stop Chords::stop_at(Index line, double way) const {
       (here - ways_[segment]) / std::max(ways_[segment + 1] - ways_[segment], 1e-30);
   const Vec3 &a = lines().positions[segment], &b = lines().positions[segment + 1];
   return {way, segment, a + static_cast<float>(std::clamp(share, 0.0, 1.0)) * (b - a)};
+}
+
+void Chords::set_order(std::span<const Index> around) {
+  const std::size_t count = around.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    beside_[around[i]] = {around[(i + count - 1) % count], around[(i + 1) % count]};
+    goes_around_[around[i]] = 1;
+  }
+}
+
+void Chords::note_ways(const Context& context) {
+  noted_.resize(line_.size());
+  constexpr std::size_t grain = 1024;
+  context.for_ranges(line_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (auto v = static_cast<Index>(begin); v < end; ++v) {
+      if (line_[v] != no_index && rails_.slides(v)) noted_[v] = *way(v, line_[v], 0);
+    }
+  });
+}
+
+std::array<std::optional<double>, 2> Chords::ways_beside(Index v) const {
+  const Index line = line_[v];
+  const double from = noted_[v];
+  std::array<std::optional<double>, 2> result;
+  for (const int k : {0, 1}) {
+    const Index w = beside_[v][k];
+    if (w == no_index) continue;
+    const bool slides = line_[w] == line && rails_.slides(w);
+    if (!slides) {
+      result[k] = way(w, line, from);
+    } else if (goes_around_[v]) {
+      const double period = length(line), ahead = (noted_[w] - from) / period;
+      result[k] = from + period * (ahead - (k == 0 ? std::ceil(ahead) : std::floor(ahead)));
+    } else {
+      result[k] = noted_[w];
+    }
+  }
+  return result;
+}
+
+std::optional<Chords::Stop> Chords::slide(Index v, const Vec3& p) const {
+  const Index line = line_[v];
+  if (line == no_index) return std::nullopt;
+  auto [before, after] = ways_beside(v);
+  if (!before || !after) return std::nullopt;
+  if (*before > *after) std::swap(before, after);
+  const double from = noted_[v];
+  if (from < *before || from > *after) return std::nullopt;
+  const double to = *way(v, p, line, from);
+  double evenly = 0;
+  if (goes_around_[v]) {
+    constexpr double large = 0.25, strongly = 8;
+    const double share = std::max(*after - from, from - *before) / length(line);
+    evenly = std::clamp(strongly * (share - large), 0.0, 1.0);
+  }
+  const double drawn = to + evenly * ((*before + *after) / 2 - to);
+  return stop_at(line, std::clamp(drawn, (*before + from) / 2, (from + *after) / 2));
 }
 
 double Chords::cut_off(Index line, const Stop& from, const Stop& to) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "finish/rails.h"
+#include "meshgrain/context.h"
 #include "meshgrain/extract.h"
 
 namespace meshgrain {
@@ -26,17 +27,34 @@ class Chords {
 
   const FeatureLines& lines() const { return rails_.lines(); }
 
+  std::size_t vertices() const { return line_.size(); }
   /// Of a vertex that slid along a line at first, and no_index of all others.
   Index line(Index v) const { return line_[v]; }
-  /// The vertices before and after a sliding one, in no order; no_index where there is none.
+  /// The vertices before and after a sliding one, in no order if none was set; no_index where there
+  /// is none.
   const std::array<Index, 2>& beside(Index v) const { return beside_[v]; }
 
   double length(Index line) const { return ways_[lines().end(line) - 1]; }
 
   /// Where on a line a vertex is, by the way that is nearest to `near`. Nothing if it does not
   /// slide, and stays elsewhere than at an end of the line.
-  std::optional<double> way(Index v, Index line, double near) const;
+  std::optional<double> way(Index v, Index line, double near) const {
+    return way(v, mesh_.positions[v], line, near);
+  }
   Stop stop_at(Index line, double way) const;
+
+  /// From now on the first two of these vertices follow each other along a closed line, and so on,
+  /// the last one and the first as well.
+  void set_order(std::span<const Index> around);
+
+  /// Notes where all that slide are.
+  void note_ways(const Context& context);
+  /// Where a vertex that wants to slide to p goes: no farther than half of the way from where it
+  /// was noted to its neighbours, so that none passes another even if all slide at once. Around
+  /// closed lines the order is that of set_order(), and there, the more of the line is between
+  /// them, the more evenly: edges over half of it are not long. Nothing if the neighbours were not
+  /// on both sides.
+  std::optional<Stop> slide(Index v, const Vec3& p) const;
 
   /// How much of a line the chord between two of its points cuts off: the integral over the line of
   /// its squared distance from the chord beyond what is tolerated, in edge lengths.
@@ -45,12 +63,18 @@ class Chords {
   double cut_off(Index v) const;
 
  private:
+  /// Where the vertices beside one were noted.
+  std::array<std::optional<double>, 2> ways_beside(Index v) const;
+  std::optional<double> way(Index v, const Vec3& p, Index line, double near) const;
+
   const Mesh& mesh_;
   const Rails& rails_;
   std::vector<double> ways_;  // of the lines' vertices
   std::vector<std::array<Index, 2>> beside_;
   std::vector<Index> line_;
-  double edge_ = 0;  // the mean length
+  std::vector<double> noted_;              // ways of vertices
+  std::vector<std::uint8_t> goes_around_;  // in order: `beside_` has the one behind first
+  double edge_ = 0;                        // the mean length
 };
 
 }  // namespace meshgrain

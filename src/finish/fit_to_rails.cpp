@@ -3,38 +3,25 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <utility>
 #include <vector>
+
+#include "finish/chains.h"
 
 namespace meshgrain {
 namespace {
 
 using Stop = Chords::Stop;
 
-/// Vertices of a mesh that follow each other along a line; the first and the last stay.
-struct Chain {
-  Index line;
-  std::vector<Index> vertices;
-  std::vector<Stop> stops;
-};
-
 /// Where the vertices of a chain go, by dynamic programming over a few places for each.
 class Fit {
  public:
   Fit(Mesh& mesh, const Chords& chords, Rails& rails)
-      : mesh_(mesh), chords_(chords), rails_(rails), seen_(mesh.positions.size(), 0) {}
+      : mesh_(mesh), chords_(chords), rails_(rails) {}
 
   void run();
 
  private:
-  /// The chain that v is in.
-  Chain chain_through(Index v) const;
-  /// All vertices that come after v on one side, up to one that is fixed or to v again.
-  void walk(Index v, Index next, std::vector<Index>& vertices) const;
-  /// Returns false if the vertices do not follow each other on the line.
-  bool find_stops(Chain& chain) const;
   /// A closed chain begins where its edges lie well already.
   void begin_at_best(Chain& chain) const;
 
@@ -44,65 +31,14 @@ class Fit {
   Mesh& mesh_;
   const Chords& chords_;
   Rails& rails_;
-  std::vector<std::uint8_t> seen_;
 };
 
 void Fit::run() {
-  for (Index v = 0; v < seen_.size(); ++v) {
-    if (chords_.line(v) == no_index || chords_.beside(v)[1] == no_index || seen_[v]) continue;
-    Chain chain = chain_through(v);
-    for (const Index w : chain.vertices) seen_[w] = 1;
-    if (!find_stops(chain) || is_good(chain)) continue;
-    const Index first = chain.vertices.front();
-    if (first == chain.vertices.back() && rails_.slides(first)) begin_at_best(chain);
+  for (Chain& chain : find_chains(chords_)) {
+    if (!find_stops(chain, chords_) || is_good(chain)) continue;
+    if (chain.is_closed() && rails_.slides(chain.vertices.front())) begin_at_best(chain);
     fit(chain);
   }
-}
-
-void Fit::walk(Index v, Index next, std::vector<Index>& vertices) const {
-  Index before = v;
-  while (next != no_index && vertices.size() <= seen_.size()) {
-    vertices.push_back(next);
-    if (next == v || chords_.line(next) != chords_.line(v)) return;
-    const auto& [a, b] = chords_.beside(next);
-    const Index after = a == before ? b : a;
-    before = std::exchange(next, after);
-  }
-}
-
-Chain Fit::chain_through(Index v) const {
-  Chain chain{chords_.line(v), {}, {}};
-  walk(v, chords_.beside(v)[0], chain.vertices);
-  const bool closed = chain.vertices.back() == v;
-  if (!closed) {
-    std::reverse(chain.vertices.begin(), chain.vertices.end());
-    chain.vertices.push_back(v);
-    walk(v, chords_.beside(v)[1], chain.vertices);
-  } else {
-    chain.vertices.insert(chain.vertices.begin(), v);
-  }
-  return chain;
-}
-
-bool Fit::find_stops(Chain& chain) const {
-  // A vertex that stays is at an end of the line; if it is not, the next one stays as well.
-  const auto is_known = [&](Index v) { return chords_.way(v, chain.line, 0).has_value(); };
-  if (!is_known(chain.vertices.back())) chain.vertices.pop_back();
-  if (!is_known(chain.vertices.front())) chain.vertices.erase(chain.vertices.begin());
-  const std::size_t count = chain.vertices.size();
-  if (count < 3) return false;
-  std::vector<double> ways(count);
-  double near = *chords_.way(chain.vertices[1], chain.line, 0);
-  for (std::size_t i = 0; i < count; ++i) {
-    near = ways[i] = *chords_.way(chain.vertices[i], chain.line, near);
-  }
-  if (ways.back() < ways.front()) {
-    std::reverse(ways.begin(), ways.end());
-    std::reverse(chain.vertices.begin(), chain.vertices.end());
-  }
-  if (!std::is_sorted(ways.begin(), ways.end(), std::less_equal<>())) return false;
-  for (const double w : ways) chain.stops.push_back(chords_.stop_at(chain.line, w));
-  return true;
 }
 
 void Fit::begin_at_best(Chain& chain) const {

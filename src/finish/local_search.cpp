@@ -163,7 +163,7 @@ float LocalSearch::quality_among_neighbors(Index f) const {
 /// `limit` on it need not be exact.
 double LocalSearch::lack(Index v, std::span<const Rival> near, double limit) const {
   constexpr double good = 0.75;
-  constexpr double against_cutting_off = 100;  // before the shapes of faces
+  constexpr double against_cutting_off = 300;  // before the shapes of faces
   double sum = against_cutting_off * placement_.cut_off(v);
   for (const Index f : around_[v]) {
     const double q = quality_here(f);

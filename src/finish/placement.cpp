@@ -27,6 +27,20 @@ Vec3 Placement::place(const Vec3& p, std::size_t v) {
   return projector_.project(end + (radius / distance) * (q - end), extraction_.nodes[v]);
 }
 
+void Placement::go_around(const VertexFaces& around) {
+  const auto upward = [&](Index v) { return normal(v); };
+  meshgrain::go_around(extraction_.mesh, around, upward, chords_, rails_);
+}
+
+Vec3 Placement::slide(const Vec3& p, std::size_t v) {
+  const Vec3 q = place(p, v);
+  if (!rails_.slides(v)) return q;
+  const auto stop = chords_.slide(static_cast<Index>(v), q);
+  if (!stop) return q;
+  rails_.set_place(v, stop->segment);
+  return stop->position;
+}
+
 void Placement::tether(std::size_t v, const Vec3& p, Index node, const Vec3& end, float radius) {
   extraction_.mesh.positions[v] = p;
   extraction_.nodes[v] = node;

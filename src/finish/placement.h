@@ -1,6 +1,7 @@
 #pragma once
 
 #include "finish/fit_to_rails.h"
+#include "finish/go_around.h"
 #include "finish/projector.h"
 #include "finish/rails.h"
 #include "meshgrain/extract.h"
@@ -19,6 +20,11 @@ class Placement {
   /// so that calls for the same vertex must not run at once.
   Vec3 place(const Vec3& p, std::size_t v);
 
+  /// To be called before vertices slide() at once.
+  void note_ways(const Context& context) { chords_.note_ways(context); }
+  /// The same as place(), but a vertex on a line stays between its neighbours there.
+  Vec3 slide(const Vec3& p, std::size_t v);
+
   /// A plane near which v, if it is free, may take small steps from about `p`.
   Projector::Plane touch(const Vec3& p, std::size_t v) {
     return projector_.touch(p, extraction_.nodes[v]);
@@ -32,6 +38,9 @@ class Placement {
   /// Moves v to a point of the surface, near a node of it; from then on it stays within `radius` of
   /// `end`, or as near as it then is.
   void tether(std::size_t v, const Vec3& p, Index node, const Vec3& end, float radius);
+
+  /// See the function.
+  void go_around(const VertexFaces& around);
 
   /// Slides vertices along lines to where the edges between them cut off less.
   void fit_lines() { fit_to_rails(extraction_.mesh, chords_, rails_); }

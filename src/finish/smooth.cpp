@@ -174,6 +174,8 @@ Smoother::Smoother(Extraction& extraction, const Mesh& surface, const Graph& gra
   previous_.resize(mesh_.positions.size());
   for_vertices([&](std::size_t v) { previous_[v] = placement_.place(mesh_.positions[v], v); });
   mesh_.positions = previous_;
+  placement_.go_around(around_);
+  previous_ = mesh_.positions;
 }
 
 template <typename Body>
@@ -235,12 +237,13 @@ void Smoother::iterate(int iterations) {
       side = mean_side(mesh_, sizes_);
     }
     fit_polygons(side);
+    placement_.note_ways(context_);
     for_vertices([&](std::size_t v) {
       const Vec3& p = mesh_.positions[v];
       Vec3 q = p + momentum * (p - previous_[v]);
       if (!around_[v].empty()) q += mean_target(static_cast<Index>(v)) - p;
       if (last || !placement_.is_free(v)) {
-        next[v] = placement_.place(q, v);
+        next[v] = placement_.slide(q, v);
         if (look) normals_[v] = placement_.normal(v);
         return;
       }

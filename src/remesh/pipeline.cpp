@@ -469,14 +469,12 @@ PositionField Pipeline::solve_positions() {
   return solver->field();
 }
 
-double Pipeline::cancelling_cost() const {
-  if (options_.regularity >= 1) return std::numeric_limits<double>::infinity();
+double Pipeline::cancelling_cost(double regularity) const {
+  if (regularity >= 1) return std::numeric_limits<double>::infinity();
   const double middle = options_.faces == OutputFaces::quads           ? 9.3
                         : options_.faces == OutputFaces::quad_dominant ? 15.6
                                                                        : 14.0;
   constexpr double least = 0.28;  // of that
-  // Sizes that vary need the dislocations where rows end.
-  const double regularity = options_.regularity / (lengths_.uniform() ? 1 : 5);
   return middle * (least + (1 - least) * regularity / (1 - regularity));
 }
 
@@ -484,7 +482,10 @@ Extraction Pipeline::extract(const PositionField& positions) {
   ExtractOptions extract;
   extract.energy = options_.position_energy;
   extract.manifold = options_.manifold;
-  extract.cancelling_cost = cancelling_cost();
+  // Sizes that vary need the dislocations where rows end.
+  extract.cancelling_cost_where_graded = cancelling_cost(options_.regularity / 5);
+  extract.cancelling_cost = options_.sizing.is_uniform() ? cancelling_cost(options_.regularity)
+                                                         : extract.cancelling_cost_where_graded;
   if (is_cloud_) {
     extract.largest_filled_gap = 12;  // a larger one may well be a hole
   } else if (nodes_are_vertices_) {

@@ -88,7 +88,7 @@ class Pipeline {
 
   /// What regularity may cost (ExtractOptions): the lattice of pure quads is twice as coarse as
   /// their edges, so that there the same cost bends the surface's grid over a longer way.
-  double cancelling_cost() const;
+  double cancelling_cost(double regularity) const;
   Extraction extract(const PositionField& positions);
 
   const RemeshOptions& options_;
