@@ -59,7 +59,7 @@ std::vector<float> lengths_by_bending(const Hierarchy& hierarchy, const Mesh& su
   std::vector<float> lengths(bends.size(), 1.0f);
   if (!(sum > 0)) return lengths;
   const double exponent = sizing.adaptive / 3;
-  const double around = 1.0 / sizing.adaptive;  // the longest face side times the bending
+  const double around = 1.5 / sizing.adaptive;  // the longest face side times the bending
   const double shortest = std::pow(sizing.ratio, -sizing.adaptive);
   const double spread = std::pow(sizing.ratio, sizing.adaptive / 2);
   std::vector<float> most(bends.size());
