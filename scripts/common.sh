@@ -12,8 +12,8 @@ fail() {
   exit 1
 }
 
-# The build folder of a preset, as CMakePresets.json has it: `ci` differs from `release` in flags only,
-# and `bench` has the benchmarks in place of the tests.
+# The build folder of a preset, as CMakePresets.json has it: `ci` differs from `release` in flags and
+# has the benchmarks too, `bench` has these in place of the tests.
 build_folder() {
   case $1 in
     ci | bench) echo "$root/build/release" ;;
