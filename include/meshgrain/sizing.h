@@ -30,11 +30,11 @@ struct Sizing {
   bool is_uniform() const { return kind == Kind::uniform && adaptive == 0; }
 };
 
-/// Relative edge lengths for the nodes of a hierarchy's finest graph; one value if the sizing is
-/// uniform. The graph is that of `surface` (Mesh::values are read), `creases` are lines at which
-/// its bending does not count, and `face_side` is the mean side of the faces that are wanted.
-/// `point` is relative to the graph's positions. Throws Error if values are wanted and missing or
-/// not positive.
+/// Relative edge lengths for the nodes of a hierarchy's finest graph: shorter around small turns of
+/// `creases`, whatever the sizing; one value if it is uniform and there are none. The graph is that
+/// of `surface` (Mesh::values are read), whose bending does not count at `creases`, and `face_side`
+/// is the mean side of the faces that are wanted. `point` is relative to the graph's positions.
+/// Throws Error if values are wanted and missing or not positive.
 EdgeLength relative_edge_lengths(const Hierarchy& hierarchy, const Mesh& surface,
                                  const FeatureLines& creases, const Sizing& sizing,
                                  double face_side, const Context& context = Context());

@@ -11,11 +11,11 @@ struct CancellingCost {
 };
 
 /// Removes position singularities by changing integers along paths from one to another, to a
-/// singularity of the orientation field, or to the border; the cheapest first. What it
-/// costs: the sum over the edges crossed of
-/// how much farther (squared, in edge lengths) the new jump is from the real distance of the ends,
-/// and over the triangles passed of how much more is wrong with them (LatticeTriangle::misfit()).
-/// To cross an edge of a short feature line costs several times that.
+/// singularity of the orientation field, or to the border; the cheapest first. The cost of a path
+/// is the sum over the edges crossed of how much farther (squared, in edge lengths) the new jump is
+/// from the real distance of the ends, and over the triangles passed of how much more is wrong with
+/// them (LatticeTriangle::misfit()). To cross an edge of a short feature line costs several times
+/// that.
 void cancel_position_singularities(LatticeMesh& lattice, const CancellingCost& most,
                                    const Context& context);
 

@@ -142,6 +142,7 @@ void multiply_by_distance(std::vector<float>& lengths, const Graph& graph, const
 EdgeLength relative_edge_lengths(const Hierarchy& hierarchy, const Mesh& surface,
                                  const FeatureLines& creases, const Sizing& sizing,
                                  double face_side, const Context& context) {
+  if (sizing.is_uniform() && creases.empty()) return EdgeLength(1.0f);
   if (!(sizing.ratio >= 1)) throw Error("the ratio of edge lengths must be at least 1");
   if (!(sizing.adaptive >= 0 && sizing.adaptive <= 1)) {
     throw Error("the adaptivity of sizes must lie between 0 and 1");
