@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 
 #include "extract/collect_faces.h"
+#include "extract/drop_unused.h"
 #include "extract/extraction_map.h"
 #include "extract/face_repair.h"
+#include "extract/piece.h"
 #include "made_fields.h"
 #include "made_points.h"
 #include "mesh/border.h"
+#include "mesh/vertex_faces.h"
 #include "meshgrain/finish.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
@@ -281,6 +284,79 @@ TEST(MakeManifold, SplitsAVertexBetweenFans) {
   EXPECT_EQ(s.non_manifold_vertices, 0u);
   EXPECT_EQ(s.components, 2u);
   EXPECT_EQ(e.nodes.size(), 6u);
+}
+
+/// Quads with a border that is a line, and a corner on it.
+Extraction quads_with_a_border() {
+  RemeshOptions options;
+  options.face_count = 300;
+  Extraction result;
+  result.mesh = remesh(sample_shape("plate"), options).mesh;
+  result.nodes.assign(result.mesh.positions.size(), 0);
+  result.mesh.normals.assign(result.mesh.positions.size(), Vec3::UnitZ());
+  for (const auto& [a, b] : rim_edges(result.mesh)) result.line_edges.push_back({a, b, 7});
+  result.corners = {result.line_edges.front().a};
+  return result;
+}
+
+TEST(Piece, IsPutBackAsItWas) {
+  const Extraction whole = quads_with_a_border();
+  const VertexFaces around = vertex_faces(whole.mesh);
+  const MeshStatistics before = mesh_statistics(whole.mesh);
+  for (Index f = 0; f < whole.mesh.faces.size(); f += 7) {
+    const Piece piece = cut_piece(whole, around, f, 2);
+    EXPECT_EQ(piece.faces.front(), f);
+    EXPECT_EQ(piece.extraction.mesh.faces.size(), piece.faces.size());
+    std::vector<Index> sources(piece.vertices.size(), no_index);
+    for (Index v = 0; v < sources.size(); ++v) {
+      if (piece.on_rim[v]) sources[v] = v;
+    }
+    Extraction again = put_back(whole, piece, piece.extraction, sources);
+    drop_unused(again);
+    const MeshStatistics after = mesh_statistics(again.mesh);
+    EXPECT_EQ(after.vertices, before.vertices);
+    EXPECT_EQ(after.faces, before.faces);
+    EXPECT_EQ(after.euler, before.euler);
+    EXPECT_EQ(after.boundary_loops, 1u);
+    EXPECT_EQ(after.non_manifold_edges + after.non_manifold_vertices, 0u);
+    EXPECT_NEAR(surface_area(again.mesh), surface_area(whole.mesh), 1e-5);
+    EXPECT_EQ(again.line_edges.size(), whole.line_edges.size());
+    ASSERT_EQ(again.corners.size(), 1u);
+    const Vec3& corner = whole.mesh.positions[whole.corners[0]];
+    EXPECT_EQ(again.mesh.positions[again.corners[0]], corner);
+  }
+}
+
+TEST(FaceRepair, QuadsCloseWithoutAChangeOfTopologyOrBorder) {
+  const Extraction whole = quads_with_a_border();
+  const MeshStatistics before = mesh_statistics(whole.mesh);
+  std::size_t closed = 0;
+  for (Index h = 0;; ++h) {
+    for (std::size_t way = 0;; ++way) {
+      ExtractionMap parts(whole, Context());
+      if (h == parts.map.halfedges()) {
+        EXPECT_GT(closed, whole.mesh.faces.size());
+        return;
+      }
+      const bool first = !parts.holes[h] && parts.corners[h] % 4 == 0;
+      FaceRepair repair(parts.map, parts.clusters, 4, parts.holes, parts.lines);
+      const std::vector<Index> ways = first ? repair.ways_to_close(h) : std::vector<Index>();
+      if (way >= ways.size()) break;
+      repair.close_quad(ways[way]);
+      repair.remove_doublets();
+      std::vector<Index> vertex;
+      const Extraction after = collect_faces(parts.map, repair, parts.clusters, vertex);
+      const MeshStatistics s = mesh_statistics(after.mesh);
+      EXPECT_LT(s.faces, before.faces);
+      EXPECT_EQ(s.quads, s.faces);
+      EXPECT_EQ(s.euler, before.euler);
+      EXPECT_EQ(s.boundary_loops, before.boundary_loops);
+      EXPECT_EQ(s.non_manifold_edges + s.non_manifold_vertices, 0u);
+      EXPECT_EQ(after.line_edges.size(), whole.line_edges.size());
+      EXPECT_EQ(after.corners.size(), 1u);
+      ++closed;
+    }
+  }
 }
 
 /// A trapezohedron: two poles with eight quads each, and between them only vertices with three.

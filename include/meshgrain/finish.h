@@ -32,6 +32,9 @@ struct SmoothOptions {
   /// From 0 to 1: how far vertices go off the surface in the end, so that faces are not all inside
   /// of what is convex.
   double lift = 0;
+  /// The mesh is only meant to cover a part of the surface, and changes little: no vertex is held
+  /// out at the ends of the surface, and faces that pass through each other are not parted.
+  bool is_part = false;
   /// Corners stay even where the faces around them are bad.
   bool corners_stay = false;
 };

@@ -10,7 +10,6 @@ namespace meshgrain {
 
 ExtractionMap::ExtractionMap(const Extraction& extraction, const Context& context) {
   const Mesh& mesh = extraction.mesh;
-  std::vector<Index> sources, corners;
   map = PolygonMap(mesh, sources, corners, context);
   holes.resize(map.halfedges());
   for (Index h = 0; h < map.halfedges(); ++h) holes[h] = corners[h] == no_index;

@@ -58,6 +58,13 @@ class FaceRepair {
   void close_quads();
   /// Closes `count` of them, wherever it leaves the fewest. Returns how many it could.
   std::size_t close_quads(std::size_t count);
+  /// Merges the corner opposite to the origin of h into that, which stays where it is if anything
+  /// holds it.
+  void close_quad(Index h);
+  /// For what halfedges that can be done to a face or to those beside it, without a change of the
+  /// topology, the borders or the lines: where the two are nearest to each other first. Vertices
+  /// with two edges may be left, see remove_doublets().
+  std::vector<Index> ways_to_close(Index face) const;
 
   /// The opposite: cuts vertices with far too many edges in two, with a quad in between, as long as
   /// that leaves fewer irregular vertices.
@@ -124,7 +131,14 @@ class FaceRepair {
   void open(const Opening& opening);
   /// The same for contracting h between triangles.
   std::optional<int> contraction_gain(Index h);
-  void close_quad(Index h);
+  /// Whether the origin of h and the corner opposite to it in their quad have nothing in common but
+  /// that; else other faces would come to touch themselves if the two became one.
+  bool are_apart(Index h) const;
+  bool may_close(Index h) const;
+  /// Whether a vertex may go anywhere.
+  bool is_loose(Index vertex) const {
+    return !clusters_.on_border[vertex] && clusters_.hold[vertex] == free_vertex;
+  }
   /// Applies the change with the greatest gain `count` times, of several the one whose two vertices
   /// are nearest to each other.
   template <typename Gain, typename Other, typename Apply>

@@ -190,8 +190,12 @@ std::optional<int> FaceRepair::closing_gain(Index h, int least) const {
     gain += is_irregular(v, 0) - is_irregular(v, -1);
   }
   if (gain < least) return std::nullopt;
-  // The two may have nothing in common but this face, or other faces would come to touch
-  // themselves.
+  return are_apart(h) ? std::optional(gain) : std::nullopt;
+}
+
+bool FaceRepair::are_apart(Index h) const {
+  const Index across = map_.next(map_.next(h));
+  const Index sides[2] = {map_.target(h), map_.target(across)};
   std::vector<Index> near;
   const auto for_faces = [&](Index start, const auto& body) {
     for (Index g = map_.around(start); g != start; g = map_.around(g)) {
@@ -205,14 +209,46 @@ std::optional<int> FaceRepair::closing_gain(Index h, int least) const {
     const bool side = v == sides[0] || v == sides[1];
     apart = apart && (side || !std::binary_search(near.begin(), near.end(), v));
   });
-  return apart ? std::optional(gain) : std::nullopt;
+  return apart;
 }
 
 void FaceRepair::close_quad(Index h) {
   const Index across = map_.next(map_.next(h));
   const Index a = map_.origin(h), c = map_.origin(across);
-  clusters_.positions[a] = 0.5f * (clusters_.positions[a] + clusters_.positions[c]);
+  if (is_loose(a)) {
+    clusters_.positions[a] = 0.5f * (clusters_.positions[a] + clusters_.positions[c]);
+  }
   contract(add_edge(h, across));
+}
+
+bool FaceRepair::may_close(Index h) const {
+  const Index across = map_.next(map_.next(h));
+  if (!is_loose(map_.origin(across))) return false;
+  for (const Index side : {map_.target(h), map_.target(across)}) {
+    const std::size_t least = clusters_.hold[side] == free_vertex ? 2 : 3;
+    if (map_.valence(side) <= least) return false;
+  }
+  return are_apart(h);
+}
+
+std::vector<Index> FaceRepair::ways_to_close(Index face) const {
+  std::vector<Index> around;
+  map_.orbit(face, around);
+  for (Index& h : around) h = PolygonMap::twin(h);
+  around.push_back(face);
+  std::vector<std::pair<float, Index>> ways;
+  for (Index h : around) {
+    if (hole_[h] || map_.degree(h) != 4) continue;
+    for (int corner = 0; corner < 4; ++corner, h = map_.next(h)) {
+      if (!may_close(h)) continue;
+      const Index a = map_.origin(h), c = map_.target(map_.next(h));
+      ways.push_back({(clusters_.positions[a] - clusters_.positions[c]).norm(), h});
+    }
+  }
+  std::sort(ways.begin(), ways.end());
+  std::vector<Index> result;
+  for (const auto& [distance, h] : ways) result.push_back(h);
+  return result;
 }
 
 void FaceRepair::close_quads() {

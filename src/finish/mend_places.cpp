@@ -16,16 +16,16 @@ namespace {
 class Mending {
  public:
   Mending(const Mesh& mesh, const VertexFaces& around, Placement& placement, LocalSearch& search,
-          bool corners_stay, const Context& context)
+          const SmoothOptions& options, const Context& context)
       : mesh_(mesh),
         around_(around),
         placement_(placement),
         search_(search),
-        corners_stay_(corners_stay),
+        options_(options),
         context_(context) {}
 
   void run() {
-    part_crossings();
+    if (!options_.is_part) part_crossings();
     failed_slides_ = 0;
     for (const Demands& demands : ever_less) {
       demands_ = demands;
@@ -109,7 +109,7 @@ class Mending {
       if (++tried > std::max(most_tried, mesh_.faces.size() / 100)) break;
       Place place = around(f, f, rings);
       --place.bad;
-      place.may_cross = place.crossings > 0 && surface_crosses(place);
+      place.may_cross = place.crossings > 0 && !options_.is_part && surface_crosses(place);
       if (!reshape(place)) restore(place);
     }
   }
@@ -183,7 +183,9 @@ class Mending {
   bool may_slide(const Place& place) const {
     return place.faces.size() <= largest_to_slide &&
            (place.may_cross || place.crossings <= most_crossings_to_slide) &&
-           failed_slides_ < most_failed_slides + mesh_.faces.size() / faces_a_failed_slide;
+           failed_slides_ < (options_.is_part
+                                 ? 1
+                                 : most_failed_slides + mesh_.faces.size() / faces_a_failed_slide);
   }
 
   bool part(const Place& place) {
@@ -264,7 +266,7 @@ class Mending {
   bool may_leave(const Place& place, Index v, Who who) const {
     if (placement_.is_free(v)) return true;
     if (placement_.is_tethered(v)) return who != Who::free;
-    return who == Who::free_and_at_bad && !(corners_stay_ && placement_.is_fixed(v)) &&
+    return who == Who::free_and_at_bad && !(options_.corners_stay && placement_.is_fixed(v)) &&
            std::ranges::binary_search(place.at_bad, v);
   }
 
@@ -293,7 +295,7 @@ class Mending {
   const VertexFaces& around_;
   Placement& placement_;
   LocalSearch& search_;
-  bool corners_stay_;
+  const SmoothOptions& options_;
   Demands demands_ = ever_less[0];
   std::size_t failed_slides_ = 0;
   const Context& context_;
@@ -302,8 +304,8 @@ class Mending {
 }  // namespace
 
 void mend_places(const Mesh& mesh, const VertexFaces& around, Placement& placement,
-                 LocalSearch& search, bool corners_stay, const Context& context) {
-  Mending(mesh, around, placement, search, corners_stay, context).run();
+                 LocalSearch& search, const SmoothOptions& options, const Context& context) {
+  Mending(mesh, around, placement, search, options, context).run();
 }
 
 }  // namespace meshgrain

@@ -4,6 +4,7 @@
 #include "finish/placement.h"
 #include "mesh/vertex_faces.h"
 #include "meshgrain/context.h"
+#include "meshgrain/finish.h"
 #include "meshgrain/mesh.h"
 
 namespace meshgrain {
@@ -12,8 +13,8 @@ namespace meshgrain {
 /// other, are turned over or nearly degenerate. They move over the surface, or if that fails a
 /// little off it; if that fails too, they let go of the features that hold them. Where nothing
 /// helps, or the surface passes through itself, all stays as it was. `search` is over the same
-/// mesh. `corners_stay`: even then.
+/// mesh.
 void mend_places(const Mesh& mesh, const VertexFaces& around, Placement& placement,
-                 LocalSearch& search, bool corners_stay, const Context& context);
+                 LocalSearch& search, const SmoothOptions& options, const Context& context);
 
 }  // namespace meshgrain

@@ -259,7 +259,7 @@ void Smoother::iterate(int iterations) {
 }
 
 void Smoother::hold_ends() {
-  if (!nodes_are_vertices_) return;
+  if (!nodes_are_vertices_ || options_.is_part) return;
   constexpr float share = 0.9f;
   const float side = mean_side(mesh_, sizes_);
   EdgeLength reach = options_.relative_size;
@@ -275,7 +275,7 @@ void Smoother::mend() {
   placement_.fit_lines();
   LocalSearch search(extraction_, around_, placement_);
   untangle(mesh_, around_, search, context_);
-  mend_places(mesh_, around_, placement_, search, options_.corners_stay, context_);
+  mend_places(mesh_, around_, placement_, search, options_, context_);
 }
 
 void Smoother::lift() {

@@ -16,6 +16,7 @@
 #include "meshgrain/singularities.h"
 #include "meshgrain/surface.h"
 #include "meshgrain/triangulate.h"
+#include "remesh/close_bad_quads.h"
 #include "remesh/flattened_share.h"
 #include "remesh/notes.h"
 #include "remesh/take_out_noise.h"
@@ -363,6 +364,10 @@ void Pipeline::smooth_faces() {
     // What is bad beside vertices that cannot move shows only now.
     if (!borders_.empty() && improve_border_faces(extraction_, options_.faces, context_)) {
       smooth(extraction_, surface_, graph(), smoothing, context_);
+    }
+    if (options_.smoothing > 0 && posy_of(options_.faces) == 4) {
+      close_bad_quads(extraction_, surface_, graph(), smoothing,
+                      target_.spare_faces(extraction_.mesh), context_);
     }
   });
 }

@@ -110,4 +110,11 @@ std::size_t Target::faces_to_close(const Mesh& mesh, double tolerance) const {
       std::ceil(faces_ > 0 ? excess * faces_ / faces_per_cell_ : excess * vertices_ / vertices)));
 }
 
+std::size_t Target::spare_faces(const Mesh& mesh) const {
+  // A vertex goes with each of them.
+  const auto count = static_cast<double>(faces_ > 0 ? mesh.faces.size() : mesh.positions.size());
+  const double wanted = faces_ > 0 ? faces_ : vertices_ > 0 ? vertices_ : count;
+  return static_cast<std::size_t>(std::max(0.0, count - (1 - tolerance()) * wanted));
+}
+
 }  // namespace meshgrain

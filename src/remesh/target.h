@@ -58,6 +58,9 @@ class Target {
   /// How often reduce_faces() must act on a mesh so that it has no more than this share too many.
   std::size_t faces_to_close(const Mesh& mesh, double tolerance) const;
 
+  /// How many faces a finished mesh may lose.
+  std::size_t spare_faces(const Mesh& mesh) const;
+
  private:
   double cells_ = 0;      // wanted squares, or pairs of triangles; 0: by length
   double length_ = 0;     // wanted lattice edge length, if by length

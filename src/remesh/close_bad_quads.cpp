@@ -1,0 +1,181 @@
+#include "remesh/close_bad_quads.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <set>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "extract/collect_faces.h"
+#include "extract/drop_unused.h"
+#include "extract/extraction_map.h"
+#include "extract/face_repair.h"
+#include "extract/piece.h"
+#include "finish/crossings.h"
+
+namespace meshgrain {
+namespace {
+
+constexpr float good = 0.1f;    // a scaled Jacobian
+constexpr int iterations = 24;  // of smoothing a piece
+// How large the pieces are, in rings of faces around the bad one, and in how many ways it is closed
+// there.
+constexpr struct {
+  int rings;
+  std::size_t ways;
+} pieces[] = {{4, 6}, {3, 2}, {5, 2}};
+// What is tried in all, and once more for so many faces.
+constexpr std::size_t tries = 20, faces_a_try = 1000;
+
+float scaled_jacobian(const Mesh& mesh, std::span<const Index> quad) {
+  const auto at = [&](std::size_t k) -> const Vec3& { return mesh.positions[quad[k % 4]]; };
+  const Vec3 up = (at(2) - at(0)).cross(at(3) - at(1)).stableNormalized();
+  float least = 1;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Vec3 ahead = (at(k + 1) - at(k)).stableNormalized();
+    const Vec3 back = (at(k + 3) - at(k)).stableNormalized();
+    least = std::min(least, ahead.cross(back).dot(up));
+  }
+  return least;
+}
+
+class Closing {
+ public:
+  Closing(Extraction& whole, const Mesh& surface, const Graph& graph,
+          const SmoothOptions& smoothing, const Context& context)
+      : whole_(whole), surface_(surface), graph_(graph), smoothing_(smoothing), context_(context) {
+    smoothing_.iterations = iterations;
+    smoothing_.is_part = true;
+    smoothing_.corners_stay = true;
+  }
+
+  std::size_t run(std::size_t most) {
+    const std::size_t count = whole_.mesh.faces.size();
+    const auto gone = [&] { return count - whole_.mesh.faces.size(); };
+    tries_left_ = tries + count / faces_a_try;
+    for (Index f = worst(); f != no_index && tries_left_ > 0; f = worst()) {
+      seen_.insert(corners(f));
+      const VertexFaces around = vertex_faces(whole_.mesh, context_);
+      for (const auto& [rings, ways] : pieces) {
+        if (close(cut_piece(whole_, around, f, rings), ways, most - gone())) break;
+      }
+    }
+    if (gone() > 0) drop_unused(whole_);
+    return gone();
+  }
+
+ private:
+  using Corners = std::array<Index, 4>;
+
+  Corners corners(Index f) const {
+    const auto face = std::as_const(whole_.mesh.faces)[f];
+    return {face[0], face[1], face[2], face[3]};
+  }
+
+  /// Of the bad quads that were not tried yet.
+  Index worst() const {
+    Index result = no_index;
+    float least = good;
+    const Faces& faces = whole_.mesh.faces;
+    for (Index f = 0; f < faces.size(); ++f) {
+      if (faces.degree(f) != 4) continue;
+      const float quality = scaled_jacobian(whole_.mesh, faces[f]);
+      if (quality >= least || seen_.contains(corners(f))) continue;
+      least = quality;
+      result = f;
+    }
+    return result;
+  }
+
+  /// How much is wrong with the faces of a piece.
+  float lack(const Extraction& part) const {
+    constexpr float inverted = 10, turned_over = 1;  // away from the surface
+    const Mesh& mesh = part.mesh;
+    float sum = 0;
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+      const auto face = mesh.faces[f];
+      Vec3 normal = Vec3::Zero(), upward = Vec3::Zero();
+      for (std::size_t k = 0; k < face.size(); ++k) {
+        const Vec3& first = mesh.positions[face[0]];
+        upward += graph_.normals[part.nodes[face[k]]];
+        if (k < 2) continue;
+        normal += (mesh.positions[face[k - 1]] - first).cross(mesh.positions[face[k]] - first);
+      }
+      if (normal.dot(upward) < 0) sum += turned_over;
+      if (face.size() != 4) continue;
+      const float quality = scaled_jacobian(mesh, face);
+      if (quality <= 0) sum += inverted;
+      sum += std::max(0.0f, good - quality);
+    }
+    return sum;
+  }
+
+  /// Closes the first face of a piece in the first of some ways that leaves less wrong with it.
+  /// Returns whether there is one.
+  bool close(const Piece& piece, std::size_t ways, std::size_t most) {
+    const float before = lack(piece.extraction);
+    for (std::size_t way = 0; way < ways && tries_left_ > 0; ++way) {
+      context_.check();
+      ExtractionMap parts(piece.extraction, context_);
+      if (!is_manifold(piece, parts)) return false;
+      // The face's first corner is the first of all.
+      const auto first = std::ranges::find(parts.corners, Index{0}) - parts.corners.begin();
+      FaceRepair repair(parts.map, parts.clusters, 4, std::move(parts.holes),
+                        std::move(parts.lines));
+      const std::vector<Index> all = repair.ways_to_close(static_cast<Index>(first));
+      if (way >= all.size()) return false;
+      repair.close_quad(all[way]);
+      repair.remove_doublets();
+      std::vector<Index> vertex;
+      Extraction changed = collect_faces(parts.map, repair, parts.clusters, vertex);
+      if (piece.faces.size() - changed.mesh.faces.size() > most) continue;
+      --tries_left_;
+      smooth(changed, surface_, graph_, smoothing_, context_);
+      if (lack(changed) >= before) continue;
+
+      std::vector<Index> sources(changed.mesh.positions.size(), no_index);
+      for (std::size_t v = 0; v < parts.sources.size(); ++v) {
+        const Index source = parts.sources[v];
+        if (vertex[v] != no_index && piece.on_rim[source]) sources[vertex[v]] = source;
+      }
+      Extraction result = put_back(whole_, piece, changed, sources);
+      if (crossings(result) > crossings(whole_)) continue;
+      whole_ = std::move(result);
+      return true;
+    }
+    return false;
+  }
+
+  /// Whether no vertex within a piece had to be cut to make a map of it.
+  static bool is_manifold(const Piece& piece, const ExtractionMap& parts) {
+    std::vector<std::uint8_t> seen(piece.vertices.size(), 0);
+    return std::ranges::none_of(parts.sources, [&](Index v) {
+      return !piece.on_rim[v] && std::exchange(seen[v], std::uint8_t{1});
+    });
+  }
+
+  std::size_t crossings(const Extraction& extraction) const {
+    return find_crossings(extraction.mesh, context_).size();
+  }
+
+  Extraction& whole_;
+  const Mesh& surface_;
+  const Graph& graph_;
+  SmoothOptions smoothing_;
+  const Context& context_;
+  std::size_t tries_left_ = 0;
+  std::set<Corners> seen_;
+};
+
+}  // namespace
+
+std::size_t close_bad_quads(Extraction& extraction, const Mesh& surface, const Graph& graph,
+                            const SmoothOptions& smoothing, std::size_t most,
+                            const Context& context) {
+  return Closing(extraction, surface, graph, smoothing, context).run(most);
+}
+
+}  // namespace meshgrain
