@@ -311,7 +311,7 @@ TEST(Finish, EdgesCutOffLessOfARaggedLine) {
 /// way around it may belong to the surface, which one face alone cannot span.
 TEST(Finish, RimsOfSmallHolesHaveSoundFaces) {
   const Mesh whole = sample_shape("blob");
-  for (const float radius : {0.04f, 0.06f}) {
+  for (const float radius : {0.04f, 0.06f, 0.09f}) {
     Mesh shape;
     shape.positions = whole.positions;
     const auto in_a_hole = [&](Index v) {
@@ -332,6 +332,16 @@ TEST(Finish, RimsOfSmallHolesHaveSoundFaces) {
       EXPECT_NEAR(static_cast<double>(result.faces.size()), wanted, 0.01 * wanted);
     }
   }
+}
+
+/// Too many edges meet between the holes: no move gives all of the quads there room.
+TEST(Finish, QuadsWithoutRoomAreTakenAway) {
+  const Mesh shape = sample_shape("three-holes");
+  const Mesh result = remeshed(shape, 500);
+  const MeshStatistics s = mesh_statistics(result);
+  EXPECT_GT(s.jacobian_min, 0.1);
+  EXPECT_GE(s.faces, 495u);
+  made::expect_same_topology(s, mesh_statistics(shape));
 }
 
 /// A ball with a horn about as thick as a face of the target is large.

@@ -60,6 +60,11 @@ Vec3 FaceRepair::face_normal(Index h) const {
   return sum;
 }
 
+/// What lies across a hole is.
+bool FaceRepair::is_turned_over(Index vertex, const Vec3& normal) const {
+  return normal.dot(clusters_.normals[vertex]) < -0.5f * normal.norm();
+}
+
 bool FaceRepair::is_straight(Index to, Index from, const Vec3& normal) const {
   if (line(to) == no_index || line(from) == no_index) return false;
   const Index v = map_.origin(to);
@@ -67,9 +72,8 @@ bool FaceRepair::is_straight(Index to, Index from, const Vec3& normal) const {
   const Vec3 a = clusters_.positions[map_.target(to)] - clusters_.positions[v];
   const Vec3 b = clusters_.positions[map_.origin(from)] - clusters_.positions[v];
   constexpr float straight = -0.6f;
-  // A triangle that lies across a hole is turned over.
-  const bool turned_over = normal.dot(clusters_.normals[v]) < -0.5f * normal.norm();
-  return turned_over != (normal.dot(a.cross(b)) < 0) || a.dot(b) < straight * a.norm() * b.norm();
+  return is_turned_over(v, normal) != (normal.dot(a.cross(b)) < 0) ||
+         a.dot(b) < straight * a.norm() * b.norm();
 }
 
 bool FaceRepair::is_last_rung(Index h) const {
@@ -78,15 +82,50 @@ bool FaceRepair::is_last_rung(Index h) const {
 }
 
 void FaceRepair::part_straight_angles() {
-  for (Index h = 0; h < map_.halfedges(); ++h) {
-    if (map_.removed(h) || hole_[h]) continue;
-    if (!is_straight(h, map_.prev(h), face_normal(h))) continue;
-    if ((map_.degree(h) != 3 || make_room(h)) && part_face(h)) continue;
-    const Index across = map_.next(h);
-    add_hub(h);
-    // Among quads, the neighbours of the origin of h keep as many edges as they had.
-    if (posy_ == 4 && may_remove(across)) map_.remove_edge(across);
+  constexpr int rounds = 8;
+  bool again = true;
+  for (int round = 0; again && round < rounds; ++round) {
+    again = false;
+    for (Index h = 0; h < map_.halfedges(); ++h) {
+      if (map_.removed(h) || hole_[h]) continue;
+      if (!is_straight(h, map_.prev(h), face_normal(h))) continue;
+      if ((map_.degree(h) != 3 || make_room(h)) && part_face(h)) continue;
+      if (posy_ == 4 && join_across_hole(h)) {
+        again = true;  // other corners of that face have straight angles now
+        if (part_face(h)) continue;
+      }
+      const Index across = map_.next(h);
+      add_hub(h);
+      // Among quads, the neighbours of the origin of h keep as many edges as they had.
+      if (posy_ == 4 && may_remove(across)) map_.remove_edge(across);
+    }
   }
+}
+
+/// Several faces in a row may lie across a hole, in the way of all edges that the border's vertices
+/// there should have to the surface: makes one of them, and of the first face beyond. Returns
+/// whether there were several.
+bool FaceRepair::join_across_hole(Index h) {
+  const auto lies_across = [&](Index g) { return is_turned_over(map_.origin(g), face_normal(g)); };
+  if (!lies_across(h) || !lies_across(PolygonMap::twin(map_.next(h)))) return false;
+  bool joined = false;
+  while (lies_across(h) && join_beyond(h)) joined = true;
+  return joined;
+}
+
+/// Joins a face with one beside it, even if vertices of the border have no edge but that then.
+bool FaceRepair::join_beyond(Index h) {
+  constexpr std::size_t most_corners = 8;
+  const auto may_lose_one = [&](Index v) { return !is_loose(v) || map_.valence(v) > 3; };
+  for (Index g = map_.next(h); g != h; g = map_.next(g)) {
+    const Index t = PolygonMap::twin(g);
+    if (line(g) != no_index || hole_[t] || touches_itself(g)) continue;
+    if (map_.degree(g) + map_.degree(t) > most_corners + 2) continue;
+    if (!may_lose_one(map_.origin(g)) || !may_lose_one(map_.target(g))) continue;
+    map_.remove_edge(g);
+    return true;
+  }
+  return false;
 }
 
 bool FaceRepair::may_remove(Index h) const {

@@ -113,9 +113,13 @@ class FaceRepair {
   /// `from`, has a straight angle there. `normal` is that of the face.
   bool is_straight(Index to, Index from, const Vec3& normal) const;
   Vec3 face_normal(Index h) const;
+  /// Whether a face of that normal looks away from the surface at one of its vertices.
+  bool is_turned_over(Index vertex, const Vec3& normal) const;
   /// Whether the faces beside an edge may become one.
   bool may_remove(Index h) const;
   bool make_room(Index h);
+  bool join_across_hole(Index h);
+  bool join_beyond(Index h);
   bool part_face(Index h);
   /// By how much the number of irregular vertices falls if the origin of h and the corner opposite
   /// to it in their quad become one; nothing if they must not, or it is less than `least`.
