@@ -28,7 +28,7 @@ constexpr struct {
   std::size_t ways;
 } pieces[] = {{4, 6}, {3, 2}, {5, 2}};
 // What is tried in all, and once more for so many faces.
-constexpr std::size_t tries = 20, faces_a_try = 1000;
+constexpr std::size_t tries = 20, faces_a_try = 4000;
 
 float scaled_jacobian(const Mesh& mesh, std::span<const Index> quad) {
   const auto at = [&](std::size_t k) -> const Vec3& { return mesh.positions[quad[k % 4]]; };
@@ -56,12 +56,7 @@ class Closing {
     const std::size_t count = whole_.mesh.faces.size();
     const auto gone = [&] { return count - whole_.mesh.faces.size(); };
     tries_left_ = tries + count / faces_a_try;
-    for (Index f = worst(); f != no_index && tries_left_ > 0; f = worst()) {
-      seen_.insert(corners(f));
-      const VertexFaces around = vertex_faces(whole_.mesh, context_);
-      for (const auto& [rings, ways] : pieces) {
-        if (close(cut_piece(whole_, around, f, rings), ways, most - gone())) break;
-      }
+    while (close_one(most - gone())) {
     }
     if (gone() > 0) drop_unused(whole_);
     return gone();
@@ -75,19 +70,34 @@ class Closing {
     return {face[0], face[1], face[2], face[3]};
   }
 
-  /// Of the bad quads that were not tried yet.
-  Index worst() const {
-    Index result = no_index;
-    float least = good;
+  /// Those that were not tried yet, the worst first.
+  std::vector<Index> bad_quads() const {
+    std::vector<std::pair<float, Index>> found;
     const Faces& faces = whole_.mesh.faces;
     for (Index f = 0; f < faces.size(); ++f) {
       if (faces.degree(f) != 4) continue;
       const float quality = scaled_jacobian(whole_.mesh, faces[f]);
-      if (quality >= least || seen_.contains(corners(f))) continue;
-      least = quality;
-      result = f;
+      if (quality < good && !seen_.contains(corners(f))) found.push_back({quality, f});
     }
+    std::ranges::sort(found);
+    std::vector<Index> result;
+    for (const auto& [quality, f] : found) result.push_back(f);
     return result;
+  }
+
+  /// Closes the worst quad that can be. Returns whether there was one.
+  bool close_one(std::size_t most) {
+    const std::vector<Index> bad = bad_quads();
+    if (bad.empty()) return false;
+    const VertexFaces around = vertex_faces(whole_.mesh, context_);
+    for (const Index f : bad) {
+      seen_.insert(corners(f));
+      for (const auto& [rings, ways] : pieces) {
+        if (close(cut_piece(whole_, around, f, rings), ways, most)) return true;
+        if (tries_left_ == 0) return false;
+      }
+    }
+    return false;
   }
 
   /// How much is wrong with the faces of a piece.
@@ -142,7 +152,8 @@ class Closing {
         if (vertex[v] != no_index && piece.on_rim[source]) sources[vertex[v]] = source;
       }
       Extraction result = put_back(whole_, piece, changed, sources);
-      if (crossings(result) > crossings(whole_)) continue;
+      const Eigen::AlignedBox3f box = box_of(piece.extraction).merged(box_of(changed));
+      if (crossings(result, box) > crossings(whole_, box)) continue;
       whole_ = std::move(result);
       return true;
     }
@@ -157,8 +168,21 @@ class Closing {
     });
   }
 
-  std::size_t crossings(const Extraction& extraction) const {
-    return find_crossings(extraction.mesh, context_).size();
+  static Eigen::AlignedBox3f box_of(const Extraction& part) {
+    Eigen::AlignedBox3f box;
+    for (const Vec3& p : part.mesh.positions) box.extend(p);
+    return box;
+  }
+
+  /// Between the faces that reach into a box.
+  std::size_t crossings(const Extraction& extraction, const Eigen::AlignedBox3f& box) const {
+    const Faces& faces = extraction.mesh.faces;
+    Mesh near;
+    near.positions = extraction.mesh.positions;
+    for (Index f = 0; f < faces.size(); ++f) {
+      if (face_box(extraction.mesh, f).intersects(box)) near.faces.push_back(faces[f]);
+    }
+    return find_crossings(near, context_).size();
   }
 
   Extraction& whole_;
