@@ -90,6 +90,7 @@ void FaceRepair::part_straight_angles() {
       if (map_.removed(h) || hole_[h]) continue;
       if (!is_straight(h, map_.prev(h), face_normal(h))) continue;
       if ((map_.degree(h) != 3 || make_room(h)) && part_face(h)) continue;
+      // Not among triangles: nothing would part what is left into such again.
       if (posy_ == 4 && join_across_hole(h)) {
         again = true;  // other corners of that face have straight angles now
         if (part_face(h)) continue;
@@ -107,7 +108,8 @@ void FaceRepair::part_straight_angles() {
 /// whether there were several.
 bool FaceRepair::join_across_hole(Index h) {
   const auto lies_across = [&](Index g) { return is_turned_over(map_.origin(g), face_normal(g)); };
-  if (!lies_across(h) || !lies_across(PolygonMap::twin(map_.next(h)))) return false;
+  const Index beyond = PolygonMap::twin(map_.next(h));
+  if (hole_[beyond] || !lies_across(h) || !lies_across(beyond)) return false;
   bool joined = false;
   while (lies_across(h) && join_beyond(h)) joined = true;
   return joined;

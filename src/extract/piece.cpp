@@ -12,34 +12,12 @@ namespace {
 
 using Edges = std::vector<std::array<Index, 2>>;
 
-std::vector<Index> vertices_of(const Mesh& mesh, std::span<const Index> faces) {
-  std::vector<Index> result;
-  for (const Index f : faces) {
-    result.insert(result.end(), mesh.faces[f].begin(), mesh.faces[f].end());
-  }
-  sort_unique(result);
-  return result;
-}
-
-/// In increasing order.
-std::vector<Index> faces_around(const Mesh& mesh, const VertexFaces& around, Index face,
-                                int rings) {
-  std::vector<Index> faces{face};
-  for (int ring = 0; ring < rings; ++ring) {
-    for (const Index v : vertices_of(mesh, faces)) {
-      faces.insert(faces.end(), around[v].begin(), around[v].end());
-    }
-    sort_unique(faces);
-  }
-  return faces;
-}
-
 }  // namespace
 
 Piece cut_piece(const Extraction& whole, const VertexFaces& around, Index face, int rings) {
   const Mesh& mesh = whole.mesh;
   Piece piece;
-  piece.faces = faces_around(mesh, around, face, rings);
+  piece.faces = with_rings(mesh, around, {face}, rings);
   piece.vertices = vertices_of(mesh, piece.faces);
   for (const Index v : piece.vertices) {
     piece.on_rim.push_back(!std::ranges::includes(piece.faces, around[v]));

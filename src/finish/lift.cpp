@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "finish/crossings.h"
-#include "finish/least_sine.h"
+#include "finish/face_shape.h"
 
 namespace meshgrain {
 namespace {

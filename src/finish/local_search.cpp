@@ -10,19 +10,10 @@
 
 #include "field/rosy.h"
 #include "finish/crossings.h"
-#include "finish/least_sine.h"
+#include "finish/face_shape.h"
 
 namespace meshgrain {
 namespace {
-
-Vec3 area_vector(std::span<const Index> face, const std::vector<Vec3>& positions) {
-  Vec3 sum = Vec3::Zero();
-  const Vec3& first = positions[face[0]];
-  for (std::size_t k = 2; k < face.size(); ++k) {
-    sum += (positions[face[k - 1]] - first).cross(positions[face[k]] - first);
-  }
-  return 0.5f * sum;
-}
 
 float face_quality(std::span<const Index> face, const std::vector<Vec3>& positions,
                    const Vec3& upward) {

@@ -122,17 +122,8 @@ class Mending {
   Place around(Index f, Index g, int rings) const {
     context_.check();
     Place place;
-    place.faces = {f, g};
-    sort_unique(place.faces);
-    for (int ring = 0; ring < rings; ++ring) {
-      std::vector<Index> wider;
-      for (const Index v : vertices_of(place.faces)) {
-        wider.insert(wider.end(), around_[v].begin(), around_[v].end());
-      }
-      sort_unique(wider);
-      place.faces.swap(wider);
-    }
-    for (const Index v : vertices_of(place.faces)) {
+    place.faces = with_rings(mesh_, around_, {f, g}, rings);
+    for (const Index v : vertices_of(mesh_, place.faces)) {
       if (std::ranges::includes(place.faces, around_[v])) place.vertices.push_back(v);
     }
     for (const Index v : place.vertices) place.before.push_back(search_.place(v));
@@ -146,15 +137,6 @@ class Mending {
     sort_unique(place.at_bad);
     place.crossings = count_crossings(place);
     return place;
-  }
-
-  std::vector<Index> vertices_of(const std::vector<Index>& faces) const {
-    std::vector<Index> result;
-    for (const Index f : faces) {
-      result.insert(result.end(), mesh_.faces[f].begin(), mesh_.faces[f].end());
-    }
-    sort_unique(result);
-    return result;
   }
 
   std::size_t count_crossings(const Place& place) const {

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "meshgrain/error.h"
+#include "util/sort_unique.h"
 
 namespace meshgrain {
 namespace {
@@ -52,6 +53,27 @@ VertexFaces faces_by_lowest_vertex(const Faces& faces, std::size_t vertices,
                                    const Context& context) {
   const auto lowest = [&](std::size_t f) { return std::array{std::ranges::min(faces[f])}; };
   return sort_by_vertex(faces.size(), vertices, faces.size(), lowest, context);
+}
+
+std::vector<Index> vertices_of(const Mesh& mesh, std::span<const Index> faces) {
+  std::vector<Index> result;
+  for (const Index f : faces) {
+    result.insert(result.end(), mesh.faces[f].begin(), mesh.faces[f].end());
+  }
+  sort_unique(result);
+  return result;
+}
+
+std::vector<Index> with_rings(const Mesh& mesh, const VertexFaces& around, std::vector<Index> faces,
+                              int rings) {
+  sort_unique(faces);
+  for (int ring = 0; ring < rings; ++ring) {
+    for (const Index v : vertices_of(mesh, faces)) {
+      faces.insert(faces.end(), around[v].begin(), around[v].end());
+    }
+    sort_unique(faces);
+  }
+  return faces;
 }
 
 }  // namespace meshgrain

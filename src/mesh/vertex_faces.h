@@ -22,6 +22,13 @@ struct VertexFaces {
 /// mesh has more corners than an index can count.
 VertexFaces vertex_faces(const Mesh& mesh, const Context& context = Context());
 
+/// The vertices of some faces, in increasing order.
+std::vector<Index> vertices_of(const Mesh& mesh, std::span<const Index> faces);
+
+/// Some faces with so many rings of others around them, in increasing order.
+std::vector<Index> with_rings(const Mesh& mesh, const VertexFaces& around, std::vector<Index> faces,
+                              int rings);
+
 /// Each face once, at the lowest of its vertices.
 VertexFaces faces_by_lowest_vertex(const Faces& faces, std::size_t vertices,
                                    const Context& context);

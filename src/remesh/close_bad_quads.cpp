@@ -15,6 +15,7 @@
 #include "extract/face_repair.h"
 #include "extract/piece.h"
 #include "finish/crossings.h"
+#include "finish/face_shape.h"
 
 namespace meshgrain {
 namespace {
@@ -31,35 +32,30 @@ constexpr struct {
 constexpr std::size_t tries = 20, faces_a_try = 4000;
 
 float scaled_jacobian(const Mesh& mesh, std::span<const Index> quad) {
-  const auto at = [&](std::size_t k) -> const Vec3& { return mesh.positions[quad[k % 4]]; };
-  const Vec3 up = (at(2) - at(0)).cross(at(3) - at(1)).stableNormalized();
-  float least = 1;
-  for (std::size_t k = 0; k < 4; ++k) {
-    const Vec3 ahead = (at(k + 1) - at(k)).stableNormalized();
-    const Vec3 back = (at(k + 3) - at(k)).stableNormalized();
-    least = std::min(least, ahead.cross(back).dot(up));
-  }
-  return least;
+  return least_sine(quad, mesh.positions, area_vector(quad, mesh.positions).normalized());
 }
 
 class Closing {
  public:
-  Closing(Extraction& whole, const Mesh& surface, const Graph& graph,
-          const SmoothOptions& smoothing, const Context& context)
-      : whole_(whole), surface_(surface), graph_(graph), smoothing_(smoothing), context_(context) {
+  Closing(Extraction& whole, const Mesh& surface, const Graph& graph, SmoothOptions smoothing,
+          const Context& context)
+      : whole_(whole),
+        surface_(surface),
+        graph_(graph),
+        smoothing_(std::move(smoothing)),
+        context_(context) {
     smoothing_.iterations = iterations;
     smoothing_.is_part = true;
     smoothing_.corners_stay = true;
   }
 
-  std::size_t run(std::size_t most) {
+  void run(std::size_t most) {
     const std::size_t count = whole_.mesh.faces.size();
     const auto gone = [&] { return count - whole_.mesh.faces.size(); };
     tries_left_ = tries + count / faces_a_try;
-    while (close_one(most - gone())) {
+    while (gone() < most && close_one(most - gone())) {
     }
     if (gone() > 0) drop_unused(whole_);
-    return gone();
   }
 
  private:
@@ -107,14 +103,9 @@ class Closing {
     float sum = 0;
     for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
       const auto face = mesh.faces[f];
-      Vec3 normal = Vec3::Zero(), upward = Vec3::Zero();
-      for (std::size_t k = 0; k < face.size(); ++k) {
-        const Vec3& first = mesh.positions[face[0]];
-        upward += graph_.normals[part.nodes[face[k]]];
-        if (k < 2) continue;
-        normal += (mesh.positions[face[k - 1]] - first).cross(mesh.positions[face[k]] - first);
-      }
-      if (normal.dot(upward) < 0) sum += turned_over;
+      Vec3 upward = Vec3::Zero();
+      for (const Index v : face) upward += graph_.normals[part.nodes[v]];
+      if (area_vector(face, mesh.positions).dot(upward) < 0) sum += turned_over;
       if (face.size() != 4) continue;
       const float quality = scaled_jacobian(mesh, face);
       if (quality <= 0) sum += inverted;
@@ -126,13 +117,14 @@ class Closing {
   /// Closes the first face of a piece in the first of some ways that leaves less wrong with it.
   /// Returns whether there is one.
   bool close(const Piece& piece, std::size_t ways, std::size_t most) {
+    const ExtractionMap map(piece.extraction, context_);
+    if (!is_manifold(piece, map)) return false;
+    // The face's first corner is the first of all.
+    const auto first = std::ranges::find(map.corners, Index{0}) - map.corners.begin();
     const float before = lack(piece.extraction);
     for (std::size_t way = 0; way < ways && tries_left_ > 0; ++way) {
       context_.check();
-      ExtractionMap parts(piece.extraction, context_);
-      if (!is_manifold(piece, parts)) return false;
-      // The face's first corner is the first of all.
-      const auto first = std::ranges::find(parts.corners, Index{0}) - parts.corners.begin();
+      ExtractionMap parts = map;
       FaceRepair repair(parts.map, parts.clusters, 4, std::move(parts.holes),
                         std::move(parts.lines));
       const std::vector<Index> all = repair.ways_to_close(static_cast<Index>(first));
@@ -196,10 +188,9 @@ class Closing {
 
 }  // namespace
 
-std::size_t close_bad_quads(Extraction& extraction, const Mesh& surface, const Graph& graph,
-                            const SmoothOptions& smoothing, std::size_t most,
-                            const Context& context) {
-  return Closing(extraction, surface, graph, smoothing, context).run(most);
+void close_bad_quads(Extraction& extraction, const Mesh& surface, const Graph& graph,
+                     SmoothOptions smoothing, std::size_t most, const Context& context) {
+  Closing(extraction, surface, graph, std::move(smoothing), context).run(most);
 }
 
 }  // namespace meshgrain

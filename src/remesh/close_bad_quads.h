@@ -5,15 +5,14 @@
 namespace meshgrain {
 
 /// Takes away what no vertex can mend by moving: quads that smooth() leaves with a scaled Jacobian
-/// below 0.1, because more edges meet there than there is room for, as at the rims of small holes.
+/// below 0.1, because more edges meet there than there is room for.
 /// Such a quad, or one beside it, is closed: two opposite corners become one vertex, in a piece of
 /// the mesh that is then smoothed again while its rim stays. That is kept only if fewer quads are
 /// bad and no more faces pass through each other. Topology, borders and features stay, and whatever
 /// is not manifold is left alone.
 ///
-/// `smoothing`: what the mesh was smoothed with. At most `most` faces go. Returns how many did.
-std::size_t close_bad_quads(Extraction& extraction, const Mesh& surface, const Graph& graph,
-                            const SmoothOptions& smoothing, std::size_t most,
-                            const Context& context);
+/// `smoothing`: what the mesh was smoothed with. At most `most` faces go.
+void close_bad_quads(Extraction& extraction, const Mesh& surface, const Graph& graph,
+                     SmoothOptions smoothing, std::size_t most, const Context& context);
 
 }  // namespace meshgrain

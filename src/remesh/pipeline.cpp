@@ -366,7 +366,7 @@ void Pipeline::smooth_faces() {
       smooth(extraction_, surface_, graph(), smoothing, context_);
     }
     if (options_.smoothing > 0 && posy_of(options_.faces) == 4) {
-      close_bad_quads(extraction_, surface_, graph(), smoothing,
+      close_bad_quads(extraction_, surface_, graph(), std::move(smoothing),
                       target_.spare_faces(extraction_.mesh), context_);
     }
   });
