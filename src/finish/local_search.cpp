@@ -11,6 +11,7 @@
 #include "field/rosy.h"
 #include "finish/crossings.h"
 #include "finish/face_shape.h"
+#include "util/sum.h"
 
 namespace meshgrain {
 namespace {
@@ -28,7 +29,8 @@ float face_quality(std::span<const Index> face, const std::vector<Vec3>& positio
 
 }  // namespace
 
-LocalSearch::LocalSearch(Extraction& extraction, const VertexFaces& around, Placement& placement)
+LocalSearch::LocalSearch(Extraction& extraction, const VertexFaces& around, Placement& placement,
+                         const Context& context)
     : mesh_(extraction.mesh),
       around_(around),
       placement_(placement),
@@ -38,12 +40,22 @@ LocalSearch::LocalSearch(Extraction& extraction, const VertexFaces& around, Plac
       batch_(mesh_.positions.size(), no_index),
       tried_(mesh_.positions.size(), 0),
       moved_(mesh_.positions.size(), 0) {
-  for (Index f = 0; f < mesh_.faces.size(); ++f) {
-    mean_area_ += area_vector(std::as_const(mesh_.faces)[f], mesh_.positions).norm() /
-                  static_cast<float>(mesh_.faces.size());
-  }
-  for (Index v = 0; v < normals_.size(); ++v) normals_[v] = placement_.normal(v);
-  for (Index f = 0; f < quality_.size(); ++f) quality_[f] = quality_here(f);
+  constexpr std::size_t grain = 1024;
+  context.for_ranges(normals_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) normals_[v] = placement_.normal(v);
+  });
+  const double area = sum_over_ranges(
+      quality_.size(),
+      [&](std::size_t begin, std::size_t end) {
+        double sum = 0;
+        for (auto f = static_cast<Index>(begin); f < end; ++f) {
+          quality_[f] = quality_here(f);
+          sum += area_vector(std::as_const(mesh_.faces)[f], mesh_.positions).norm();
+        }
+        return sum;
+      },
+      context);
+  mean_area_ = static_cast<float>(area / static_cast<double>(quality_.size()));
 }
 
 bool LocalSearch::improve(std::span<const Index> vertices, int sweeps, const Context& context) {
@@ -214,12 +226,13 @@ bool LocalSearch::improve(Index v) {
   const std::vector<Rival> near = rivals_near(v, length);
   const double before = lack(v, near, std::numeric_limits<double>::infinity());
   if (before < 1e-6) return false;
-  Vec3 best = mesh_.positions[v];
-  Placement::Seed best_seed = placement_.seed(v);
+  const Place start = place(v);
+  Vec3 best = start.position;
+  Placement::Seed best_seed = start.seed;
   double least = before;
   const auto attempt = [&](const Vec3& target) {
     placement_.set_seed(v, best_seed);
-    mesh_.positions[v] = placement_.place(target, v);
+    mesh_.positions[v] = placement_.place_roughly(target, v);
     const double now = lack(v, near, least);
     if (now < least) {
       least = now;
@@ -236,11 +249,15 @@ bool LocalSearch::improve(Index v) {
       attempt(from + step * (std::cos(angle) * x + std::sin(angle) * y));
     }
   }
-  mesh_.positions[v] = best;
-  placement_.set_seed(v, best_seed);
-  if (least > 0.99 * before) return false;
-  put(v, {best, best_seed});
-  return true;
+  const double enough = 0.99 * before;
+  bool better = least <= enough;
+  if (better) {
+    placement_.set_seed(v, best_seed);
+    mesh_.positions[v] = placement_.place(best, v);
+    better = lack(v, near, before) <= enough;
+  }
+  put(v, better ? place(v) : start);
+  return better;
 }
 
 }  // namespace meshgrain

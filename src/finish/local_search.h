@@ -18,7 +18,8 @@ namespace meshgrain {
 class LocalSearch {
  public:
   /// All must outlive this.
-  LocalSearch(Extraction& extraction, const VertexFaces& around, Placement& placement);
+  LocalSearch(Extraction& extraction, const VertexFaces& around, Placement& placement,
+              const Context& context);
 
   /// What a face is worth: the least sine of its corners (a quad's scaled Jacobian), seen along the
   /// normal of the face; negative where a corner is turned in, and below -1 if the whole face looks

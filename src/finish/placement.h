@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "finish/fit_to_rails.h"
 #include "finish/go_around.h"
 #include "finish/projector.h"
@@ -28,6 +31,23 @@ class Placement {
   /// A plane near which v, if it is free, may take small steps from about `p`.
   Projector::Plane touch(const Vec3& p, std::size_t v) {
     return projector_.touch(p, extraction_.nodes[v]);
+  }
+
+  /// About the same as place(), sooner: on a plane that touches the surface.
+  Vec3 place_roughly(const Vec3& p, std::size_t v) {
+    return is_free(v) ? touch(p, v).project(p) : place(p, v);
+  }
+
+  /// To be called before vertices[k], one after the other, look for their planes: those to come
+  /// lie far from each other in memory.
+  void prefetch(std::span<const Index> vertices, std::size_t k) const {
+    constexpr std::size_t soon = 6, later = 12;
+    if (k + later < vertices.size()) {
+      projector_.prefetch_node(extraction_.nodes[vertices[k + later]]);
+    }
+    if (k + soon < vertices.size()) {
+      projector_.prefetch_neighbors(extraction_.nodes[vertices[k + soon]]);
+    }
   }
 
   bool is_fixed(std::size_t v) const { return rails_.is_fixed(v); }

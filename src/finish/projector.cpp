@@ -1,5 +1,7 @@
 #include "finish/projector.h"
 
+#include <hwy/cache_control.h>
+
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
@@ -105,6 +107,17 @@ Projector::Plane Projector::touch(const Vec3& p, Index& seed) const {
   }
   walk_to_nearest(p, seed);
   return {graph_.positions[seed], graph_.normals[seed]};
+}
+
+void Projector::prefetch_node(Index seed) const {
+  if (seed >= graph_.size()) return;
+  hwy::Prefetch(&graph_.offsets[seed]);
+  hwy::Prefetch(&graph_.positions[seed]);
+  hwy::Prefetch(&graph_.normals[seed]);
+}
+
+void Projector::prefetch_neighbors(Index seed) const {
+  if (seed < graph_.size()) hwy::Prefetch(graph_.neighbors.data() + graph_.offsets[seed]);
 }
 
 void Projector::walk_to_nearest(const Vec3& p, Index& seed) const {

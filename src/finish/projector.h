@@ -32,6 +32,10 @@ class Projector {
   /// project(): at the nearest vertex, which is found far sooner than the nearest point.
   Plane touch(const Vec3& p, Index& seed) const;
 
+  /// Asks the memory for what touch() reads of a seed; the neighbours after the node.
+  void prefetch_node(Index seed) const;
+  void prefetch_neighbors(Index seed) const;
+
   /// The normal of the surface at a vertex.
   Vec3 normal(Index vertex) const;
 

@@ -351,7 +351,7 @@ void Pipeline::smooth_faces() {
     // The more regular, the more the grid must stretch. Triangles of one size are regular; the
     // triangles among quads are smaller than these.
     if (options_.faces == OutputFaces::quads) {
-      smoothing.evenness = 0.62 + 0.12 * options_.regularity;
+      smoothing.evenness = 0.61 + 0.12 * options_.regularity;
     }
     if (options_.faces == OutputFaces::triangles) smoothing.evenness = 0.85;
     if (options_.faces == OutputFaces::quad_dominant) smoothing.evenness = 0.48;
