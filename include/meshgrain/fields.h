@@ -164,7 +164,7 @@ class PositionSolver : public FieldSolver {
   static std::unique_ptr<PositionSolver> create(
       const Hierarchy& hierarchy, const OrientationField& orientation,
       const EdgeLength& edge_length, const PositionOptions& options,
-      std::span<const PositionConstraint> constraints = {});
+      std::span<const PositionConstraint> constraints = {}, const Context& context = Context());
   virtual PositionField field() const = 0;
   virtual void set_field(const PositionField& field) = 0;
   virtual void set_constraints(std::span<const PositionConstraint> constraints) = 0;

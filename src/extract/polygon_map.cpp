@@ -82,6 +82,19 @@ PolygonMap::PolygonMap(const Mesh& mesh, std::vector<Index>& sources, std::vecto
     }
     return found;
   };
+  std::vector<Index> opposite(corners.size(), no_index);
+  context.for_ranges(faces.size(), 2048, [&](std::size_t begin, std::size_t end) {
+    for (auto f = static_cast<Index>(begin); f < end; ++f) {
+      const auto face = faces[f];
+      for (std::size_t k = 0; k < face.size(); ++k) {
+        const auto corner = static_cast<Index>(faces.first(f) + k);
+        const Index a = face[k], b = face[(k + 1) % face.size()];
+        if (a > b || single(a, b) != corner) continue;  // from the lower end
+        opposite[corner] = single(b, a);
+        if (opposite[corner] != no_index) opposite[opposite[corner]] = corner;
+      }
+    }
+  });
   const auto add_pair = [&] {
     const auto h = static_cast<Index>(next_.size());
     next_.insert(next_.end(), 2, no_index);
@@ -89,15 +102,12 @@ PolygonMap::PolygonMap(const Mesh& mesh, std::vector<Index>& sources, std::vecto
     return h;
   };
   for (Index f = 0; f < faces.size(); ++f) {
-    const auto face = faces[f];
-    for (std::size_t k = 0; k < face.size(); ++k) {
+    for (std::size_t k = 0; k < faces.degree(f); ++k) {
       const std::size_t corner = faces.first(f) + k;
       if (halfedge_of[corner] != no_index) continue;
-      const Index a = face[k], b = face[(k + 1) % face.size()];
-      const Index opposite = single(a, b) == corner ? single(b, a) : no_index;
       const Index h = add_pair();
       halfedge_of[corner] = h;
-      if (opposite != no_index) halfedge_of[opposite] = h + 1;
+      if (opposite[corner] != no_index) halfedge_of[opposite[corner]] = h + 1;
     }
   }
   corner_at.assign(next_.size(), no_index);

@@ -55,7 +55,7 @@ class Multiresolution {
     for (Index i = 0; i < values_.size(); ++i) {
       values_[i] = kernel.random(i, hash64(options.seed, i));
     }
-    enter_level();
+    enter_level(Context(1));
   }
 
   bool step(const Context& context) {
@@ -93,7 +93,7 @@ class Multiresolution {
     held_.clear();
     level_ = 0;
     sweep_ = sweeps();
-    enter_level();
+    enter_level(Context(1));
   }
 
   void restart(std::span<const Index> region) {
@@ -108,7 +108,7 @@ class Multiresolution {
     level_ = top;
     sweep_ = 0;
     values_ = held_.back();
-    enter_level();
+    enter_level(Context(1));
   }
 
   void freeze_integers(const Context& context) {
@@ -157,8 +157,8 @@ class Multiresolution {
     return hierarchy_.levels[0].size() < large ? 2 : 1;
   }
 
-  void enter_level() {
-    if (options_.schedule != Schedule::random_order) coloring_ = color_blocks(graph());
+  void enter_level(const Context& context) {
+    if (options_.schedule != Schedule::random_order) coloring_ = color_blocks(graph(), context);
   }
 
   bool is_active(std::size_t i) const {
@@ -239,7 +239,7 @@ class Multiresolution {
       }
     });
     values_.swap(finer);
-    enter_level();
+    enter_level(context);
   }
 
   /// The opposite, for restart(): values of level l + 1 from those of level l.

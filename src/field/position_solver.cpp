@@ -5,6 +5,7 @@
 #include "field/position_kernel.h"
 #include "field/running_share.h"
 #include "field/with_symmetry.h"
+#include "graph/for_each_child.h"
 #include "meshgrain/error.h"
 #include "meshgrain/fields.h"
 
@@ -15,7 +16,7 @@ namespace {
 template <int N>
 std::vector<LatticeFrame> restrict_frames(const Hierarchy& hierarchy,
                                           const OrientationField& orientation,
-                                          const EdgeLength& edge_length) {
+                                          const EdgeLength& edge_length, const Context& context) {
   std::vector<LatticeFrame> frames(hierarchy.levels.size());
   frames[0] = {orientation.directions, edge_length};
   for (std::size_t l = 0; l + 1 < frames.size(); ++l) {
@@ -26,17 +27,17 @@ std::vector<LatticeFrame> restrict_frames(const Hierarchy& hierarchy,
     directions.resize(coarse.size());
     std::vector<float> lengths(edge_length.uniform() ? 0 : coarse.size());
     RunningShare share(coarse.size());
-    for (Index i = 0; i < fine.size(); ++i) {
-      const Index k = hierarchy.parents[l][i];
+    const auto merge = [&](Index i, Index k) {
       const Vec3& direction = frames[l].directions[i];
       const bool first = share.is_first(k);
       const float before = share.add(k, fine.areas[i]);
       directions[k] =
           first ? kernel.prolong(k, direction) : kernel.merge(k, directions[k], direction, before);
-      if (lengths.empty()) continue;
+      if (lengths.empty()) return;
       const float length = frames[l].edge_length[i];
       lengths[k] = first ? length : before * lengths[k] + (1 - before) * length;
-    }
+    };
+    for_each_child(hierarchy.parents[l], merge, context);
     frames[l + 1].edge_length =
         edge_length.uniform() ? edge_length : EdgeLength(std::move(lengths));
   }
@@ -85,7 +86,8 @@ class Solver final : public KernelSolver<PositionSolver, PositionKernel<S, E>> {
 
 std::unique_ptr<PositionSolver> PositionSolver::create(
     const Hierarchy& hierarchy, const OrientationField& orientation, const EdgeLength& edge_length,
-    const PositionOptions& options, std::span<const PositionConstraint> constraints) {
+    const PositionOptions& options, std::span<const PositionConstraint> constraints,
+    const Context& context) {
   if (options.posy % orientation.rosy != 0) {
     throw Error("a " + std::to_string(options.posy) + "-PoSy cannot follow a " +
                 std::to_string(orientation.rosy) +
@@ -97,7 +99,7 @@ std::unique_ptr<PositionSolver> PositionSolver::create(
     }
   }
   auto frames = with_rosy(orientation.rosy, [&]<int N>() {
-    return restrict_frames<N>(hierarchy, orientation, edge_length);
+    return restrict_frames<N>(hierarchy, orientation, edge_length, context);
   });
   return with_posy(options.posy, [&]<int S>() -> std::unique_ptr<PositionSolver> {
     if (options.energy == PositionEnergy::intrinsic) {
@@ -114,7 +116,7 @@ PositionField solve_position(const Hierarchy& hierarchy, const OrientationField&
                              std::span<const PositionConstraint> constraints,
                              const Context& context) {
   const auto solver =
-      PositionSolver::create(hierarchy, orientation, edge_length, options, constraints);
+      PositionSolver::create(hierarchy, orientation, edge_length, options, constraints, context);
   solver->solve(context);
   return solver->field();
 }

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "meshgrain/context.h"
 #include "meshgrain/graph.h"
 
 namespace meshgrain {
@@ -15,6 +16,6 @@ struct BlockColoring {
   std::vector<std::vector<Index>> colors;  // the blocks of each colour
 };
 
-BlockColoring color_blocks(const Graph& graph);
+BlockColoring color_blocks(const Graph& graph, const Context& context);
 
 }  // namespace meshgrain

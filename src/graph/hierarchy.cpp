@@ -1,9 +1,13 @@
 #include "meshgrain/hierarchy.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <numeric>
 #include <span>
 
+#include "graph/for_each_child.h"
+#include "util/collect.h"
 #include "util/hash.h"
 
 namespace meshgrain {
@@ -42,8 +46,8 @@ Index best_neighbor(const Graph& graph, Index i, const Admits& admits) {
 std::vector<Index> match_pairs(const Graph& graph, const Context& context) {
   const std::size_t n = graph.size();
   std::vector<Index> partner(n, no_index), proposal(n, no_index);
-  std::vector<Index> open(n), alone;
-  for (std::size_t i = 0; i < n; ++i) open[i] = static_cast<Index>(i);
+  std::vector<Index> open(n);
+  std::iota(open.begin(), open.end(), Index{0});
   const auto is_free = [&](Index j) { return partner[j] == no_index; };
   while (!open.empty()) {
     context.for_ranges(open.size(), grain, [&](std::size_t begin, std::size_t end) {
@@ -51,23 +55,26 @@ std::vector<Index> match_pairs(const Graph& graph, const Context& context) {
         proposal[open[k]] = best_neighbor(graph, open[k], is_free);
       }
     });
-    std::size_t kept = 0;
-    for (const Index i : open) {
-      const Index j = proposal[i];
-      if (j == no_index) {
-        alone.push_back(i);
-      } else if (proposal[j] == i) {
-        partner[i] = j;
-      } else {
-        open[kept++] = i;
+    const auto settle = [&](std::size_t begin, std::size_t end, std::vector<Index>& still_open) {
+      for (std::size_t k = begin; k < end; ++k) {
+        const Index i = open[k], j = proposal[i];
+        if (j == no_index) continue;
+        if (proposal[j] == i) {
+          partner[i] = j;
+        } else {
+          still_open.push_back(i);
+        }
       }
+    };
+    open = collect<Index>(open.size(), settle, context);
+  }
+  context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
+    for (auto i = static_cast<Index>(begin); i < end; ++i) {
+      if (partner[i] != no_index) continue;
+      const Index j = best_neighbor(graph, i, [](Index) { return true; });
+      partner[i] = j == no_index ? i : j;
     }
-    open.resize(kept);
-  }
-  for (const Index i : alone) {
-    const Index j = best_neighbor(graph, i, [](Index) { return true; });
-    partner[i] = j == no_index ? i : j;
-  }
+  });
   return partner;
 }
 
@@ -84,30 +91,47 @@ struct Grouping {
   }
 };
 
-Grouping group(const std::vector<Index>& partner) {
+Grouping group(const std::vector<Index>& partner, const Context& context) {
   const std::size_t n = partner.size();
-  Grouping result;
-  result.parent.resize(n);
-  result.offsets.push_back(0);
   // A node that found no free neighbour points to one that is in a pair already, in `partner`.
   const auto leader = [&](Index i) {
     const Index j = partner[i];
     return partner[j] == i || partner[j] == j ? std::min(i, j) : std::min(j, partner[j]);
   };
-  std::vector<Index> number(n, no_index);
-  for (Index i = 0; i < n; ++i) {
-    Index& k = number[leader(i)];
-    if (k == no_index) {
-      k = static_cast<Index>(result.offsets.size() - 1);
-      result.offsets.push_back(0);
+  std::vector<Index> first(n, no_index);  // of the nodes of each leader
+  context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
+    for (auto i = static_cast<Index>(begin); i < end; ++i) {
+      const std::atomic_ref lowest(first[leader(i)]);
+      Index other = lowest.load(std::memory_order_relaxed);
+      while (i < other && !lowest.compare_exchange_weak(other, i, std::memory_order_relaxed)) {
+      }
     }
-    result.parent[i] = k;
-    ++result.offsets[k + 1];
-  }
+  });
+  const std::vector<Index> firsts = collect<Index>(
+      n,
+      [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+        for (auto i = static_cast<Index>(begin); i < end; ++i) {
+          if (first[leader(i)] == i) out.push_back(i);
+        }
+      },
+      context);
+  Grouping result;
+  result.parent.resize(n);
+  for (Index k = 0; k < firsts.size(); ++k) result.parent[firsts[k]] = k;
+  context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
+    for (auto i = static_cast<Index>(begin); i < end; ++i) {
+      const Index other = first[leader(i)];
+      if (other != i) result.parent[i] = result.parent[other];
+    }
+  });
+  result.offsets.assign(firsts.size() + 1, 0);
+  for_each_child(
+      result.parent, [&](Index, Index k) { ++result.offsets[k + 1]; }, context);
   for (std::size_t k = 0; k < result.size(); ++k) result.offsets[k + 1] += result.offsets[k];
   result.children.resize(n);
   std::vector<Index> next(result.offsets.begin(), result.offsets.end() - 1);
-  for (Index i = 0; i < n; ++i) result.children[next[result.parent[i]]++] = i;
+  for_each_child(
+      result.parent, [&](Index i, Index k) { result.children[next[k]++] = i; }, context);
   return result;
 }
 
@@ -194,7 +218,7 @@ Hierarchy build_hierarchy(Graph graph, const Context& context) {
   while (!hierarchy.levels.back().neighbors.empty()) {
     const Graph& fine = hierarchy.levels.back();
     const std::vector<Index> partner = match_pairs(fine, context);
-    Grouping groups = group(partner);
+    Grouping groups = group(partner, context);
     Graph coarse;
     merge_nodes(fine, groups, coarse, context);
     merge_edges(fine, groups, coarse, context);

@@ -127,24 +127,28 @@ void split(const std::vector<Vec3>& positions, Triangle v, Triangle mid,
 /// Puts parts in the places of some faces, in increasing order, those of each up to its end.
 /// Returns where they are then.
 std::vector<Index> put_in_place(Faces& faces, std::span<const Index> split_faces,
-                                std::span<const Triangle> parts,
-                                std::span<const std::size_t> ends) {
-  Faces result = Faces::uniform(faces.size() + parts.size() - split_faces.size(), 3);
-  std::vector<Index> places;
-  places.reserve(parts.size());
-  const Index* from = std::as_const(faces).corners().data();
-  Index* const begin = result.corners().data();
-  Index* to = begin;
-  std::size_t done = 0, part = 0;
-  for (std::size_t k = 0; k < split_faces.size(); ++k) {
-    to = std::copy(from + 3 * done, from + 3 * std::size_t{split_faces[k]}, to);
-    done = split_faces[k] + std::size_t{1};
-    for (; part < ends[k]; ++part) {
-      places.push_back(static_cast<Index>((to - begin) / 3));
-      to = std::ranges::copy(parts[part], to).out;
+                                std::span<const Triangle> parts, std::span<const std::size_t> ends,
+                                const Context& context) {
+  const std::size_t old_count = faces.size(), split_count = split_faces.size();
+  Faces result = Faces::uniform(old_count + parts.size() - split_count, 3);
+  std::vector<Index> places(parts.size());
+  const Index* const from = std::as_const(faces).corners().data();
+  Index* const to = result.corners().data();
+  // The parts of each face, and whole faces from there to the next one.
+  const auto put = [&](std::size_t k) {
+    const std::size_t first = k == 0 ? 0 : ends[k - 1];
+    std::size_t place = split_faces[k] - k + first;
+    for (std::size_t part = first; part < ends[k]; ++part, ++place) {
+      places[part] = static_cast<Index>(place);
+      std::ranges::copy(parts[part], to + 3 * place);
     }
-  }
-  std::copy(from + 3 * done, from + 3 * faces.size(), to);
+    const std::size_t next = k + 1 < split_count ? split_faces[k + 1] : old_count;
+    std::copy(from + 3 * (split_faces[k] + std::size_t{1}), from + 3 * next, to + 3 * place);
+  };
+  if (split_count > 0) std::copy(from, from + 3 * std::size_t{split_faces[0]}, to);
+  context.for_ranges(split_count, 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) put(k);
+  });
   faces = std::move(result);
   return places;
 }
@@ -187,7 +191,7 @@ bool split_long_edges(Mesh& mesh, const Limit& limit, const Split& on_split,
       ends.push_back(parts.size());
     }
     // Only the parts of a split face can have edges that are too long.
-    const std::vector<Index> changed = put_in_place(mesh.faces, faces, parts, ends);
+    const std::vector<Index> changed = put_in_place(mesh.faces, faces, parts, ends, context);
     split_marks(edges, old_count, mesh);
     faces = faces_to_split(
         mesh, limit, changed.size(), [&](std::size_t k) { return changed[k]; }, context);

@@ -3,6 +3,9 @@
 #include <cmath>
 #include <vector>
 
+#include "graph/for_each_child.h"
+#include "util/sum.h"
+
 namespace meshgrain {
 namespace {
 
@@ -11,42 +14,51 @@ constexpr float crease = 0.7f;  // cosine
 /// The vector areas of patches.
 using Patches = std::vector<Vec3>;
 
-double total(const Patches& patches) {
-  double sum = 0;
-  for (const Vec3& area : patches) sum += area.norm();
-  return sum;
+double total(const Patches& patches, const Context& context) {
+  return sum_over_ranges(
+      patches.size(),
+      [&](std::size_t begin, std::size_t end) {
+        double sum = 0;
+        for (std::size_t i = begin; i < end; ++i) sum += patches[i].norm();
+        return sum;
+      },
+      context);
 }
 
-Patches merged(const Patches& patches, const std::vector<Index>& parents, std::size_t count) {
+Patches merged(const Patches& patches, const std::vector<Index>& parents, std::size_t count,
+               const Context& context) {
   Patches result(count, Vec3::Zero());
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    Vec3& whole = result[parents[i]];
+  const auto merge = [&](Index i, Index k) {
+    Vec3& whole = result[k];
     const float size = whole.norm(), more = patches[i].norm();
     if (size == 0 || whole.dot(patches[i]) > crease * size * more) {
       whole += patches[i];
     } else {
       whole *= (size + more) / size;
     }
-  }
+  };
+  for_each_child(parents, merge, context);
   return result;
 }
 
 }  // namespace
 
-double flattened_share(const Hierarchy& hierarchy, double patch) {
+double flattened_share(const Hierarchy& hierarchy, double patch, const Context& context) {
   const Graph& finest = hierarchy.levels[0];
   Patches patches(finest.size());
-  for (std::size_t i = 0; i < patches.size(); ++i) patches[i] = finest.areas[i] * finest.normals[i];
-  const double area = total(patches);
+  context.for_ranges(patches.size(), 8192, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) patches[i] = finest.areas[i] * finest.normals[i];
+  });
+  const double area = total(patches, context);
   double left = area;
   for (std::size_t level = 0; level + 1 < hierarchy.levels.size(); ++level) {
     const std::size_t count = hierarchy.levels[level + 1].size();
     const double finer = area / static_cast<double>(patches.size());
     const double coarser = area / static_cast<double>(count);
     if (!(finer < patch)) break;
-    patches = merged(patches, hierarchy.parents[level], count);
+    patches = merged(patches, hierarchy.parents[level], count, context);
     const double before = left;
-    left = total(patches);
+    left = total(patches, context);
     if (coarser > patch) {  // in between
       const double share = std::log(patch / finer) / std::log(coarser / finer);
       left = before + share * (left - before);

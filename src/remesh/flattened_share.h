@@ -7,6 +7,6 @@ namespace meshgrain {
 /// What share of a surface's area is left when patches of about `patch` each are flattened along
 /// their mean normals: 1 for a plane, less where the surface bends or is rough within a patch. What
 /// bends by more than a crease does stays as it is.
-double flattened_share(const Hierarchy& hierarchy, double patch);
+double flattened_share(const Hierarchy& hierarchy, double patch, const Context& context);
 
 }  // namespace meshgrain

@@ -62,7 +62,8 @@ void Pipeline::clean_up(Mesh input) {
     frame_ = unit_frame(input);
     target_ = Target(options_, result_.report.input_vertices, frame_.scale);
     enter(frame_, input);
-    surface_ = is_cloud_ ? std::move(input) : triangulate(input);
+    const bool is_ready = is_cloud_ || input.faces.uniform_degree() == 3;
+    surface_ = is_ready ? std::move(input) : triangulate(input);
     drop_pieces();
   });
 }
@@ -181,7 +182,8 @@ double Pipeline::faces_to_ask_for() const {
   const double cells = options_.faces == OutputFaces::quads           ? 2
                        : options_.faces == OutputFaces::quad_dominant ? 3
                                                                       : 4;
-  return count_to_aim_at() / flattened_share(hierarchy_, cells * mean_length_ * mean_length_);
+  return count_to_aim_at() /
+         flattened_share(hierarchy_, cells * mean_length_ * mean_length_, context_);
 }
 
 bool Pipeline::fit_lengths_to_borders(double more_faces) {
@@ -468,7 +470,7 @@ PositionField Pipeline::solve_positions() {
   position.posy = posy_of(options_.faces);
   position.energy = options_.position_energy;
   const auto solver = PositionSolver::create(hierarchy_, fields().orientation, lengths_, position,
-                                             constraints_.position);
+                                             constraints_.position, context_);
   while (solver->step(context_)) context_.progress("position field", solver->progress());
   result_.report.position_energies = solver->energies();
   return solver->field();
