@@ -212,6 +212,13 @@ std::vector<LocalSearch::Rival> LocalSearch::rivals_near(Index v, float distance
   return near;
 }
 
+/// In edge lengths. What is nearly good needs no long ones.
+float LocalSearch::first_step(Index v) const {
+  float worst = 1;
+  for (const Index f : around_[v]) worst = std::min(worst, quality_[f]);
+  return worst > 0.5f ? 0.125f : worst > 0.2f ? 0.25f : 0.5f;
+}
+
 bool LocalSearch::improve(Index v) {
   if (placement_.is_fixed(v) || around_[v].empty()) return false;
   const Vec3 x = any_tangent(normals_[v]), y = normals_[v].cross(x);
@@ -226,13 +233,12 @@ bool LocalSearch::improve(Index v) {
   const std::vector<Rival> near = rivals_near(v, length);
   const double before = lack(v, near, std::numeric_limits<double>::infinity());
   if (before < 1e-6) return false;
-  const Place start = place(v);
-  Vec3 best = start.position;
-  Placement::Seed best_seed = start.seed;
+  Vec3 best = mesh_.positions[v];
+  Placement::Seed best_seed = placement_.seed(v);
   double least = before;
   const auto attempt = [&](const Vec3& target) {
     placement_.set_seed(v, best_seed);
-    mesh_.positions[v] = placement_.place_roughly(target, v);
+    mesh_.positions[v] = placement_.place(target, v);
     const double now = lack(v, near, least);
     if (now < least) {
       least = now;
@@ -242,22 +248,18 @@ bool LocalSearch::improve(Index v) {
   };
   attempt(mean_neighbor(v));
   constexpr int directions = 8;
-  for (float step = 0.5f * length; step > 0.03f * length; step /= 2) {
+  for (float step = first_step(v) * length; step > 0.03f * length; step /= 2) {
     const Vec3 from = best;
     for (int k = 0; k < directions; ++k) {
       const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(k) / directions;
       attempt(from + step * (std::cos(angle) * x + std::sin(angle) * y));
     }
   }
-  const double enough = 0.99 * before;
-  bool better = least <= enough;
-  if (better) {
-    placement_.set_seed(v, best_seed);
-    mesh_.positions[v] = placement_.place(best, v);
-    better = lack(v, near, before) <= enough;
-  }
-  put(v, better ? place(v) : start);
-  return better;
+  mesh_.positions[v] = best;
+  placement_.set_seed(v, best_seed);
+  if (least > 0.99 * before) return false;
+  put(v, {best, best_seed});
+  return true;
 }
 
 }  // namespace meshgrain

@@ -59,6 +59,7 @@ class LocalSearch {
   std::vector<std::vector<Index>> batches(std::span<const Index> vertices);
   bool has_news(Index v) const;
   bool improve(Index v);
+  float first_step(Index v) const;
   float quality_here(Index f) const;
   double lack(Index v, std::span<const Rival> near, double limit) const;
   /// The rivals that the faces around v may meet when it moves by up to a distance.

@@ -42,6 +42,7 @@ class Mending {
     std::vector<Index> at_bad;  // those of them that belong to bad faces, see is_bad()
     std::size_t crossings = 0;  // pairs of faces that pass through each other
     std::size_t bad = 0;        // faces
+    std::size_t poor = 0;       // faces, see count_poor()
     bool may_cross = false;     // as the surface itself does
   };
 
@@ -55,6 +56,9 @@ class Mending {
   static constexpr Demands ever_less[] = {{true, 0.1f}, {false, 0.1f}, {false, 0}};
   static constexpr int ever_wider[] = {2, 3, 5};  // rings of faces around the bad ones
 
+  // A thin finger can be mended by drawing it into a string.
+  static constexpr float poor = 0.3f;                  // quality
+  static constexpr std::size_t most_spoiled = 2;       // faces that become poor
   static constexpr std::size_t largest_to_slide = 80;  // faces of a place: it takes long
   static constexpr std::size_t most_crossings_to_slide = 25;
   static constexpr std::size_t most_failed_slides = 16;  // in all, and one more for so many faces:
@@ -119,6 +123,12 @@ class Mending {
            (demands_.along_surface || search_.quality_among_neighbors(f) < demands_.quality);
   }
 
+  std::size_t count_poor(const Place& place) const {
+    return static_cast<std::size_t>(std::ranges::count_if(place.faces, [&](Index f) {
+      return search_.quality(f) < poor && search_.quality_among_neighbors(f) < poor;
+    }));
+  }
+
   Place around(Index f, Index g, int rings) const {
     context_.check();
     Place place;
@@ -135,6 +145,7 @@ class Mending {
       }
     }
     sort_unique(place.at_bad);
+    place.poor = count_poor(place);
     place.crossings = count_crossings(place);
     return place;
   }
@@ -158,7 +169,7 @@ class Mending {
   }
 
   bool is_mended(const Place& place) const {
-    return count_bad(place) <= place.bad &&
+    return count_bad(place) <= place.bad && count_poor(place) <= place.poor + most_spoiled &&
            (place.may_cross || count_crossings(place) <= place.crossings);
   }
 

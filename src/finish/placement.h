@@ -33,11 +33,6 @@ class Placement {
     return projector_.touch(p, extraction_.nodes[v]);
   }
 
-  /// About the same as place(), sooner: on a plane that touches the surface.
-  Vec3 place_roughly(const Vec3& p, std::size_t v) {
-    return is_free(v) ? touch(p, v).project(p) : place(p, v);
-  }
-
   /// To be called before vertices[k], one after the other, look for their planes: those to come
   /// lie far from each other in memory.
   void prefetch(std::span<const Index> vertices, std::size_t k) const {

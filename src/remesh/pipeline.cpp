@@ -355,7 +355,7 @@ void Pipeline::smooth_faces() {
     if (options_.faces == OutputFaces::quads) {
       smoothing.evenness = 0.61 + 0.12 * options_.regularity;
     }
-    if (options_.faces == OutputFaces::triangles) smoothing.evenness = 0.85;
+    if (options_.faces == OutputFaces::triangles) smoothing.evenness = 0.83;
     if (options_.faces == OutputFaces::quad_dominant) smoothing.evenness = 0.48;
     const EdgeLength& lengths = fields().position.edge_length;
     if (!lengths.uniform() && nodes_are_vertices_) smoothing.relative_size = lengths;
