@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <map>
 #include <numeric>
 
+#include "graph/for_each_child.h"
 #include "made_graph.h"
+#include "util/hash.h"
 
 namespace meshgrain {
 namespace {
@@ -167,6 +170,21 @@ TEST(Hierarchy, HasAboutLogarithmicallyManyLevels) {
   const double log2 = std::log2(static_cast<double>(hierarchy.levels[0].size()));
   EXPECT_LE(static_cast<double>(hierarchy.levels.size()), log2 + 2);
   EXPECT_GT(static_cast<double>(hierarchy.levels.size()), log2 / 2);
+}
+
+TEST(Hierarchy, ChildrenOfAParentAreVisitedInOrder) {
+  constexpr Index nodes = 50000, parents = 20000;
+  const auto near_in_order = [](Index i) { return (i / 5 * 2 + i % 7) % parents; };
+  const auto anyhow = [](Index i) { return static_cast<Index>(hash64(1, i) % parents); };
+  for (const auto& parent_of :
+       {std::function<Index(Index)>(near_in_order), std::function<Index(Index)>(anyhow)}) {
+    std::vector<Index> parent(nodes);
+    std::vector<std::vector<Index>> wanted(parents), found(parents);
+    for (Index i = 0; i < nodes; ++i) wanted[parent[i] = parent_of(i)].push_back(i);
+    for_each_child(
+        parent, [&](Index i, Index k) { found[k].push_back(i); }, Context(3));
+    EXPECT_EQ(found, wanted);
+  }
 }
 
 }  // namespace
