@@ -52,7 +52,9 @@ std::vector<Index> match_pairs(const Graph& graph, const Context& context) {
   while (!open.empty()) {
     context.for_ranges(open.size(), grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
-        proposal[open[k]] = best_neighbor(graph, open[k], is_free);
+        Index& best = proposal[open[k]];
+        if (best != no_index && is_free(best)) continue;  // still the best, as no more are free
+        best = best_neighbor(graph, open[k], is_free);
       }
     });
     const auto settle = [&](std::size_t begin, std::size_t end, std::vector<Index>& still_open) {
