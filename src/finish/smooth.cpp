@@ -102,7 +102,7 @@ class Smoother {
     Vec3 from = Vec3::Zero();
     Projector::Plane plane;  // at first none: it leaves all as it is
 
-    /// A plane serves as long as the vertex has not gone far, and not where it was once let go.
+    /// Whether the plane is good enough for a vertex that has come to p.
     bool serves(const Vec3& p, float side) const {
       constexpr float far = 0.1f;
       return !plane.normal.isZero(0) && (p - from).squaredNorm() < far * far * side * side;
@@ -207,7 +207,7 @@ void Smoother::iterate(int iterations, bool put_on) {
   // Each step goes on in part where the last one went (Polyak's heavy ball): faults that reach far
   // then fade in as many iterations as they are edges wide, rather than in the square of that.
   constexpr float momentum = 0.9f;
-  constexpr int between_looks = 4;
+  constexpr int between_looks = 4;  // at sizes, and at lines
   std::vector<Vec3> next(mesh_.positions.size());
   float side = 0;
   for (int iteration = 0; iteration < iterations; ++iteration) {
@@ -232,7 +232,8 @@ void Smoother::iterate(int iterations, bool put_on) {
           }
           // From inside of a thin finger, the nearest point may be on its other side.
           next[v] = touches_[v].plane.project(next[v]);
-          return iteration % 2 == 0 && !touches_[v].serves(next[v], side);
+          const bool may_look = iteration % 2 == 0;
+          return may_look && !touches_[v].serves(next[v], side);
         },
         next);
     previous_.swap(mesh_.positions);
