@@ -46,22 +46,14 @@ class Mending {
     bool may_cross = false;     // as the surface itself does
   };
 
-  /// Who may leave the surface; `free_and_at_bad`: ends too, and the lines only beside bad faces.
-  enum class Who { free, free_and_ends, free_and_at_bad };
-
-  /// What makes a face acceptable, and what may be given up for it.
+  /// What makes a face acceptable.
   struct Demands {
     bool along_surface;  // it looks where the surface does; else only where its neighbours do
     float quality;
-    Who may_leave;
   };
 
-  // Across a fold that is narrower than a face, faces cannot look where the surface does there. To
-  // draw in the end of a finger is worse than that.
-  static constexpr Demands ever_less[] = {{true, 0.1f, Who::free},
-                                          {false, 0.1f, Who::free},
-                                          {false, 0.1f, Who::free_and_at_bad},
-                                          {false, 0, Who::free_and_at_bad}};
+  // Across a fold that is narrower than a face, faces cannot look where the surface does there.
+  static constexpr Demands ever_less[] = {{true, 0.1f}, {false, 0.1f}, {false, 0}};
   static constexpr int ever_wider[] = {2, 3, 5};  // rings of faces around the bad ones
 
   // A thin finger can be mended by drawing it into a string.
@@ -196,17 +188,15 @@ class Mending {
     }
     if (loosen(place, Who::free) || (may_slide(place) && slide(place))) return true;
     restore(place);
-    return demands_.may_leave != Who::free && loosen(place, Who::free_and_ends);
+    return loosen(place, Who::free_and_ends);
   }
 
   /// Ends that are held go before features do.
   bool reshape(const Place& place) {
     for (const Who who : {Who::free, Who::free_and_ends}) {
-      if (who > demands_.may_leave) return false;
       if (loosen(place, who) || (may_slide(place) && slide(place))) return true;
       restore(place);
     }
-    if (demands_.may_leave != Who::free_and_at_bad) return false;
     if (may_slide(place)) {
       if (leave_lines(place)) return true;
       restore(place);
@@ -262,6 +252,9 @@ class Mending {
     for (const Index v : place.at_bad) any = placement_.release(v) || any;
     return any && slide(place);
   }
+
+  /// Who may leave the surface; `free_and_at_bad`: ends too, and the lines only beside bad faces.
+  enum class Who { free, free_and_ends, free_and_at_bad };
 
   bool may_leave(const Place& place, Index v, Who who) const {
     if (placement_.is_free(v)) return true;
