@@ -82,6 +82,7 @@ PolygonMap::PolygonMap(const Mesh& mesh, std::vector<Index>& sources, std::vecto
     }
     return found;
   };
+  // Of each corner, the one where the same edge starts in the other direction.
   std::vector<Index> opposite(corners.size(), no_index);
   context.for_ranges(faces.size(), 2048, [&](std::size_t begin, std::size_t end) {
     for (auto f = static_cast<Index>(begin); f < end; ++f) {

@@ -42,7 +42,7 @@ class Mending {
     std::vector<Index> at_bad;  // those of them that belong to bad faces, see is_bad()
     std::size_t crossings = 0;  // pairs of faces that pass through each other
     std::size_t bad = 0;        // faces
-    std::size_t poor = 0;       // faces, see count_poor()
+    std::size_t poor = 0;       // faces, see not_poor
     bool may_cross = false;     // as the surface itself does
   };
 
@@ -56,8 +56,8 @@ class Mending {
   static constexpr Demands ever_less[] = {{true, 0.1f}, {false, 0.1f}, {false, 0}};
   static constexpr int ever_wider[] = {2, 3, 5};  // rings of faces around the bad ones
 
-  // A thin finger can be mended by drawing it into a string.
-  static constexpr float poor = 0.3f;                  // quality
+  // A face must not be mended by drawing a thin finger into a string.
+  static constexpr Demands not_poor = {false, 0.3f};
   static constexpr std::size_t most_spoiled = 2;       // faces that become poor
   static constexpr std::size_t largest_to_slide = 80;  // faces of a place: it takes long
   static constexpr std::size_t most_crossings_to_slide = 25;
@@ -118,15 +118,15 @@ class Mending {
     }
   }
 
-  bool is_bad(Index f) const {
-    return search_.quality(f) < demands_.quality &&
-           (demands_.along_surface || search_.quality_among_neighbors(f) < demands_.quality);
+  bool falls_short(Index f, const Demands& demands) const {
+    return search_.quality(f) < demands.quality &&
+           (demands.along_surface || search_.quality_among_neighbors(f) < demands.quality);
   }
+  bool is_bad(Index f) const { return falls_short(f, demands_); }
 
-  std::size_t count_poor(const Place& place) const {
-    return static_cast<std::size_t>(std::ranges::count_if(place.faces, [&](Index f) {
-      return search_.quality(f) < poor && search_.quality_among_neighbors(f) < poor;
-    }));
+  std::size_t count_short(const Place& place, const Demands& demands) const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(place.faces, [&](Index f) { return falls_short(f, demands); }));
   }
 
   Place around(Index f, Index g, int rings) const {
@@ -145,7 +145,7 @@ class Mending {
       }
     }
     sort_unique(place.at_bad);
-    place.poor = count_poor(place);
+    place.poor = count_short(place, not_poor);
     place.crossings = count_crossings(place);
     return place;
   }
@@ -163,13 +163,9 @@ class Mending {
     return count;
   }
 
-  std::size_t count_bad(const Place& place) const {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(place.faces, [&](Index f) { return is_bad(f); }));
-  }
-
   bool is_mended(const Place& place) const {
-    return count_bad(place) <= place.bad && count_poor(place) <= place.poor + most_spoiled &&
+    return count_short(place, demands_) <= place.bad &&
+           count_short(place, not_poor) <= place.poor + most_spoiled &&
            (place.may_cross || count_crossings(place) <= place.crossings);
   }
 

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <optional>
 
+#include "finish/face_shape.h"
+
 namespace meshgrain {
 namespace {
 
@@ -46,7 +48,7 @@ Vec3 resized(Vec3 x, const Vec3& normal, const PolygonFit& fit, float side_of_un
   return x;
 }
 
-/// Quads are most of all faces, and their diagonals say everything: a few times as fast.
+/// Quads are most of all faces, and their diagonals say everything.
 void fit_square(std::span<const Index> face, const std::vector<Vec3>& positions,
                 const PolygonFit& fit, std::span<Vec3> corners) {
   const Vec3 &a = positions[face[0]], &b = positions[face[1]], &c = positions[face[2]],
@@ -80,20 +82,16 @@ void fit_regular_polygon(std::span<const Index> face, const std::vector<Vec3>& p
   if (!is_known) larger = RegularPolygon::of(n);
   const RegularPolygon& polygon = is_known ? known[n - 3] : larger;
   // The coefficient is the mean of the corners, each turned back by the angle of the polygon's.
-  Vec3 center = Vec3::Zero(), along = Vec3::Zero(), across = Vec3::Zero(), area = Vec3::Zero();
+  Vec3 center = Vec3::Zero(), along = Vec3::Zero(), across = Vec3::Zero();
   for (std::size_t k = 0; k < n; ++k) {
     const Vec3& p = positions[face[k]];
     center += p;
     along += polygon.corners[k][0] * p;
     across += polygon.corners[k][1] * p;
   }
-  const Vec3& first = positions[face[0]];
-  for (std::size_t k = 2; k < n; ++k) {
-    area += (positions[face[k - 1]] - first).cross(positions[face[k]] - first);
-  }
   const auto count = static_cast<float>(n);
   center /= count;
-  const auto normal = upright(area, fit.upward);
+  const auto normal = upright(area_vector(face, positions), fit.upward);
   if (!normal) {
     std::ranges::fill(corners, center);
     return;
