@@ -13,6 +13,7 @@
 #include "finish/mend_places.h"
 #include "finish/placement.h"
 #include "finish/regular_polygon.h"
+#include "finish/unfold.h"
 #include "finish/untangle.h"
 #include "mesh/vertex_faces.h"
 #include "meshgrain/finish.h"
@@ -213,10 +214,17 @@ void Smoother::iterate(int iterations, bool put_on) {
   for (int iteration = 0; iteration < iterations; ++iteration) {
     context_.progress("smoothing", static_cast<double>(iteration) / iterations);
     const bool look = iteration % between_looks == 0;
+    const bool may_look = iteration % 2 == 0;  // at the surface
     const bool exactly = put_on && iteration + 1 == iterations;
     if (look) {
       look_up_sizes();
       side = mean_side(mesh_, sizes_, context_);
+    }
+    if (may_look && iteration > 0) {
+      for (const Index v : unfold(extraction_, around_, placement_, normals_, context_)) {
+        previous_[v] = mesh_.positions[v];
+        touches_[v] = {};
+      }
     }
     fit_polygons(side);
     placement_.note_ways(context_);
@@ -232,7 +240,6 @@ void Smoother::iterate(int iterations, bool put_on) {
           }
           // From inside of a thin finger, the nearest point may be on its other side.
           next[v] = touches_[v].plane.project(next[v]);
-          const bool may_look = iteration % 2 == 0;
           return may_look && !touches_[v].serves(next[v], side);
         },
         next);

@@ -1,0 +1,106 @@
+#include "finish/unfold.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "finish/face_shape.h"
+#include "util/collect.h"
+#include "util/sort_unique.h"
+
+namespace meshgrain {
+namespace {
+
+class Unfolding {
+ public:
+  Unfolding(Extraction& extraction, const VertexFaces& around, Placement& placement,
+            std::vector<Vec3>& normals)
+      : mesh_(extraction.mesh), around_(around), placement_(placement), normals_(normals) {}
+
+  /// Below 0 where a face is turned over or reflex.
+  float quality(Index f) const {
+    const auto face = std::as_const(mesh_.faces)[f];
+    Vec3 upward = Vec3::Zero();
+    for (const Index v : face) upward += normals_[v];
+    return least_sine(face, mesh_.positions, upward.normalized());
+  }
+
+  /// Puts v between its neighbours, on the side where one of them is. Returns whether that unfolds
+  /// something; else v stays.
+  bool bring_back(Index v) {
+    if (!placement_.is_free(v)) return false;
+    Vec3 mean = Vec3::Zero();
+    std::vector<Index> nodes;  // of the neighbours
+    for (const Index f : around_[v]) {
+      for (const Index w : std::as_const(mesh_.faces)[f]) {
+        if (w == v) continue;
+        mean += mesh_.positions[w];
+        nodes.push_back(placement_.node(placement_.seed(w)));
+      }
+    }
+    mean /= static_cast<float>(nodes.size());
+    sort_unique(nodes);
+    const Place before = place(v);
+    Place best = before;
+    const float now = lack(v);
+    float least = now;
+    for (const Index node : nodes) {
+      placement_.set_seed(v, {node, before.seed.on_line});
+      mesh_.positions[v] = placement_.place(mean, v);
+      normals_[v] = placement_.normal(v);
+      if (const float left = lack(v); left < least) {
+        least = left;
+        best = place(v);
+      }
+    }
+    put(v, best);
+    return least < now;
+  }
+
+ private:
+  struct Place {
+    Vec3 position, normal;
+    Placement::Seed seed;
+  };
+  Place place(Index v) const { return {mesh_.positions[v], normals_[v], placement_.seed(v)}; }
+  void put(Index v, const Place& place) {
+    mesh_.positions[v] = place.position;
+    normals_[v] = place.normal;
+    placement_.set_seed(v, place.seed);
+  }
+
+  /// What the faces around a vertex lack.
+  float lack(Index v) const {
+    constexpr float good = 0.5f;
+    float sum = 0;
+    for (const Index f : around_[v]) sum += std::max(0.0f, good - quality(f));
+    return sum;
+  }
+
+  Mesh& mesh_;
+  const VertexFaces& around_;
+  Placement& placement_;
+  std::vector<Vec3>& normals_;
+};
+
+}  // namespace
+
+std::vector<Index> unfold(Extraction& extraction, const VertexFaces& around, Placement& placement,
+                          std::vector<Vec3>& normals, const Context& context) {
+  Unfolding unfolding(extraction, around, placement, normals);
+  const Mesh& mesh = extraction.mesh;
+  const auto folded = collect<Index>(
+      mesh.faces.size(),
+      [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
+        for (auto f = static_cast<Index>(begin); f < end; ++f) {
+          if (unfolding.quality(f) < 0) found.push_back(f);
+        }
+      },
+      context);
+  std::vector<Index> moved;
+  for (const Index v : vertices_of(mesh, folded)) {
+    if (unfolding.bring_back(v)) moved.push_back(v);
+  }
+  return moved;
+}
+
+}  // namespace meshgrain
