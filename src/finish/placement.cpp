@@ -21,9 +21,10 @@ Vec3 Placement::place(const Vec3& p, std::size_t v) {
   if (!rails_.is_free(v)) return rails_.project(p, v);
   const Vec3 q = projector_.project(p, extraction_.nodes[v]);
   if (!is_tethered(v)) return q;
-  const auto& [end, radius] = tethers_[tether_[v]];
+  const auto& [end, radius, node] = tethers_[tether_[v]];
   const float distance = (q - end).norm();
   if (distance <= radius) return q;
+  extraction_.nodes[v] = node;  // from afar the walk might not come around a bend
   return projector_.project(end + (radius / distance) * (q - end), extraction_.nodes[v]);
 }
 
@@ -48,7 +49,7 @@ void Placement::tether(std::size_t v, const Vec3& p, Index node, const Vec3& end
     tether_[v] = static_cast<Index>(tethers_.size());
     tethers_.emplace_back();
   }
-  tethers_[tether_[v]] = {end, std::max(radius, (p - end).norm())};
+  tethers_[tether_[v]] = {end, std::max(radius, (p - end).norm()), node};
 }
 
 }  // namespace meshgrain

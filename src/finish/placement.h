@@ -90,6 +90,7 @@ class Placement {
   struct Tether {
     Vec3 end;
     float radius;
+    Index node;  // of the surface, within that radius
   };
 
   Extraction& extraction_;

@@ -284,12 +284,15 @@ void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
   Smoother smoother(extraction, surface, graph, features, options, context);
   if (options.iterations == 0) return;
   // Even sizes draw the surface's ends in first of all, so that they show early.
-  constexpr int parts = 3;
-  for (int part = 0; part < parts; ++part) {
-    if (part > 0) smoother.hold_ends();
-    smoother.iterate(options.iterations * (part + 1) / parts - options.iterations * part / parts,
-                     part + 1 == parts);
+  constexpr int hold_after[] = {1, 2, 4}, whole = 6;  // sixths of the iterations
+  int done = 0;
+  for (const int sixths : hold_after) {
+    const int until = options.iterations * sixths / whole;
+    smoother.iterate(until - done, false);
+    smoother.hold_ends();
+    done = until;
   }
+  smoother.iterate(options.iterations - done, true);
   smoother.mend();
   smoother.lift();
 }
