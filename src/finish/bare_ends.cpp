@@ -37,9 +37,9 @@ Index walk_to_nearest(const Vec3& p, const Mesh& mesh, const VertexFaces& around
   return vertex;
 }
 
-/// Straight ways of the nodes that have a vertex within reach on their side of the surface. It is
-/// looked for from where the node before found its own, else from the vertices with the nodes just
-/// before and after: near in a space-filling order, near in space.
+/// Straight ways of the nodes that have a vertex within reach on their side of the surface, not yet
+/// the nearest. It is looked for from where the node before found its own, else from the vertices
+/// with the nodes just before and after: near in a space-filling order, near in space.
 Ways straight_ways(const Extraction& extraction, const VertexFaces& around, const Graph& graph,
                    const EdgeLength& reach, const Context& context) {
   const std::size_t n = graph.size();
@@ -62,14 +62,16 @@ Ways straight_ways(const Extraction& extraction, const VertexFaces& around, cons
     for (auto i = static_cast<Index>(begin); i < end; ++i) {
       while (after != places.end() && after->node < i) ++after;
       const Vec3& p = graph.positions[i];
-      const auto reached_from = [&](Index start) {
-        const Index v = walk_to_nearest(p, extraction.mesh, around, start);
+      const auto is_reached = [&](Index v) {
         const float length = (p - extraction.mesh.positions[v]).norm();
         if (length > reach[i]) return false;
         if (graph.normals[i].dot(graph.normals[extraction.nodes[v]]) <= 0) return false;
         ways.length[i] = length;
         ways.vertex[i] = v;
         return true;
+      };
+      const auto reached_from = [&](Index start) {
+        return is_reached(start) || is_reached(walk_to_nearest(p, extraction.mesh, around, start));
       };
       if (i > begin && ways.vertex[i - 1] != no_index && reached_from(ways.vertex[i - 1])) continue;
       if (after != places.end() && reached_from(after->vertex)) continue;
@@ -79,10 +81,11 @@ Ways straight_ways(const Extraction& extraction, const VertexFaces& around, cons
   return ways;
 }
 
-/// Goes on over the graph to the nodes that no vertex reaches.
-void go_on(Ways& ways, const Graph& graph, const Context& context) {
+/// Goes on over the graph to the nodes that no vertex reaches, from those beside them.
+void go_on(Ways& ways, const Extraction& extraction, const VertexFaces& around, const Graph& graph,
+           const Context& context) {
   using Source = std::pair<float, Index>;
-  const auto sources = collect<Source>(
+  auto sources = collect<Source>(
       graph.size(),
       [&](std::size_t begin, std::size_t end, std::vector<Source>& found) {
         for (auto i = static_cast<Index>(begin); i < end; ++i) {
@@ -90,11 +93,16 @@ void go_on(Ways& ways, const Graph& graph, const Context& context) {
           const auto around = graph.neighbors_of(i);
           if (std::any_of(around.begin(), around.end(),
                           [&](Index j) { return ways.vertex[j] == no_index; })) {
-            found.push_back({ways.length[i], i});
+            found.push_back({0, i});
           }
         }
       },
       context);
+  for (auto& [length, i] : sources) {
+    ways.vertex[i] = walk_to_nearest(graph.positions[i], extraction.mesh, around, ways.vertex[i]);
+    length = (graph.positions[i] - extraction.mesh.positions[ways.vertex[i]]).norm();
+    ways.length[i] = length;
+  }
   const auto lower = [&](Index i, Index j) {
     const float farther = ways.length[i] + (graph.positions[j] - graph.positions[i]).norm();
     if (farther >= ways.length[j]) return false;
@@ -130,7 +138,7 @@ std::vector<Reach> find_bare_ends(const Extraction& extraction, const VertexFace
                                   const Graph& graph, const EdgeLength& reach,
                                   const Context& context) {
   Ways ways = straight_ways(extraction, around, graph, reach, context);
-  go_on(ways, graph, context);
+  go_on(ways, extraction, around, graph, context);
   struct Tip {
     float distance;
     Index node;

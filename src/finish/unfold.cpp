@@ -1,6 +1,7 @@
 #include "finish/unfold.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "finish/face_shape.h"
@@ -16,12 +17,18 @@ class Unfolding {
             std::vector<Vec3>& normals)
       : mesh_(extraction.mesh), around_(around), placement_(placement), normals_(normals) {}
 
-  /// Below 0 where a face is turned over or reflex.
-  float quality(Index f) const {
+  /// Whether a face is turned over, reflex or has an edge without length.
+  bool is_folded(Index f) const {
     const auto face = std::as_const(mesh_.faces)[f];
-    Vec3 upward = Vec3::Zero();
-    for (const Index v : face) upward += normals_[v];
-    return least_sine(face, mesh_.positions, upward.normalized());
+    const Vec3 up = upward(face);
+    Vec3 back = mesh_.positions[face.back()] - mesh_.positions[face[0]];
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const Vec3& next = mesh_.positions[face[k + 1 < face.size() ? k + 1 : 0]];
+      const Vec3 ahead = next - mesh_.positions[face[k]];
+      if (!(ahead.cross(back).dot(up) > 0)) return true;
+      back = -ahead;
+    }
+    return false;
   }
 
   /// Puts v between its neighbours, on the side where one of them is. Returns whether that unfolds
@@ -68,11 +75,20 @@ class Unfolding {
     placement_.set_seed(v, place.seed);
   }
 
+  Vec3 upward(std::span<const Index> face) const {
+    Vec3 sum = Vec3::Zero();
+    for (const Index v : face) sum += normals_[v];
+    return sum;
+  }
+
   /// What the faces around a vertex lack.
   float lack(Index v) const {
     constexpr float good = 0.5f;
     float sum = 0;
-    for (const Index f : around_[v]) sum += std::max(0.0f, good - quality(f));
+    for (const Index f : around_[v]) {
+      const auto face = std::as_const(mesh_.faces)[f];
+      sum += std::max(0.0f, good - least_sine(face, mesh_.positions, upward(face).normalized()));
+    }
     return sum;
   }
 
@@ -92,7 +108,7 @@ std::vector<Index> unfold(Extraction& extraction, const VertexFaces& around, Pla
       mesh.faces.size(),
       [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
         for (auto f = static_cast<Index>(begin); f < end; ++f) {
-          if (unfolding.quality(f) < 0) found.push_back(f);
+          if (unfolding.is_folded(f)) found.push_back(f);
         }
       },
       context);
