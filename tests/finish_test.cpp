@@ -11,10 +11,13 @@
 #include "finish/crossings.h"
 #include "finish/fit_to_rails.h"
 #include "finish/go_around.h"
+#include "finish/placement.h"
+#include "finish/unfold.h"
 #include "mesh/vertex_faces.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
 #include "meshgrain/statistics.h"
+#include "meshgrain/triangulate.h"
 #include "same_topology.h"
 #include "util/triangle.h"
 
@@ -342,6 +345,45 @@ TEST(Finish, QuadsWithoutRoomAreTakenAway) {
   EXPECT_GT(s.jacobian_min, 0.1);
   EXPECT_GE(s.faces, 495u);
   made::expect_same_topology(s, mesh_statistics(shape));
+}
+
+/// A leg of five faces around: from its far side no step over the surface leads back.
+TEST(Finish, VerticesComeBackFromTheOtherSide) {
+  constexpr double radius = 0.3, top = 2;
+  std::vector<std::array<double, 2>> profile;
+  for (int k = -20; k <= 20; ++k) profile.push_back({radius, top * k / 20});
+  const Mesh surface = triangulate(turned(profile, 60));
+  const Graph graph = build_graph(surface);
+  const auto nearest = [&](const Vec3& p) {
+    const auto nearer = [&](const Vec3& a, const Vec3& b) {
+      return (a - p).squaredNorm() < (b - p).squaredNorm();
+    };
+    return static_cast<Index>(std::ranges::min_element(surface.positions, nearer) -
+                              surface.positions.begin());
+  };
+  constexpr Index around_leg = 5, rings = 7, strayed = 3 * around_leg;
+  Extraction leg;
+  for (Index k = 0; k < around_leg * rings; ++k) {
+    const double angle = 2 * std::numbers::pi * (k % around_leg) / around_leg;
+    const double turned_angle = k == strayed ? angle + std::numbers::pi : angle;
+    const double z = 0.35 * (static_cast<double>(k / around_leg) - (rings - 1) / 2.0);
+    leg.mesh.positions.push_back(
+        Eigen::Vector3d(radius * std::cos(turned_angle), radius * std::sin(turned_angle), z)
+            .cast<float>());
+    leg.nodes.push_back(nearest(leg.mesh.positions.back()));
+    if (k + around_leg >= around_leg * rings) continue;
+    const Index next = k % around_leg + 1 < around_leg ? k + 1 : k + 1 - around_leg;
+    leg.mesh.faces.push_back(std::array<Index, 4>{k, next, next + around_leg, k + around_leg});
+  }
+  const FeatureLines none;
+  Placement placement(leg, surface, graph, none, Context());
+  std::vector<Vec3> normals;
+  for (Index v = 0; v < leg.nodes.size(); ++v) normals.push_back(placement.normal(v));
+  const std::vector<Index> moved =
+      unfold(leg, vertex_faces(leg.mesh), placement, normals, Context());
+  EXPECT_EQ(moved, std::vector<Index>{strayed});
+  EXPECT_LT((leg.mesh.positions[strayed] - Vec3(radius, 0, 0)).norm(), 0.1);
+  EXPECT_GT(normals[strayed].x(), 0.9f);
 }
 
 /// A ball with a horn about as thick as a face of the target is large.
