@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/midpoint.h"
 #include "meshgrain/error.h"
 #include "meshgrain/surface.h"
 #include "util/collect.h"
@@ -61,15 +62,6 @@ LongEdges long_edges(const Mesh& mesh, const Limit& limit, std::span<const Index
   }
   sort_unique(edges);
   return edges;
-}
-
-void append_midpoint(Mesh& mesh, Index a, Index b) {
-  mesh.positions.push_back(0.5f * (mesh.positions[a] + mesh.positions[b]));
-  if (!mesh.normals.empty()) {
-    const Vec3 sum = mesh.normals[a] + mesh.normals[b];
-    mesh.normals.push_back(sum.norm() > 1e-6f ? Vec3(sum.normalized()) : mesh.normals[a]);
-  }
-  if (!mesh.values.empty()) mesh.values.push_back(0.5f * (mesh.values[a] + mesh.values[b]));
 }
 
 /// Splits marked edges at their midpoints, which have the numbers from `first` on.

@@ -10,6 +10,7 @@
 #include "extract/remove_strips.h"
 #include "field/transfer.h"
 #include "mesh/border.h"
+#include "mesh/refine_slivers.h"
 #include "meshgrain/clean.h"
 #include "meshgrain/error.h"
 #include "meshgrain/finish.h"
@@ -84,7 +85,10 @@ void Pipeline::refine() {
       if (!(whole > 0)) throw Error("the input has no surface: all of its faces are degenerate");
       const EdgeLengths edges = edge_lengths(surface_, context_);
       const double limit = target_.longest_input_edge(options_, whole, edges.mean);
-      if (edges.max > limit) subdivide(surface_, limit, context_);
+      if (edges.max > limit) {
+        refine_slivers(surface_, limit, context_);
+        subdivide(surface_, limit, context_);
+      }
       return whole;
     });
     lay_guides(target_.edge_length(area));
