@@ -382,7 +382,7 @@ TEST(Finish, VerticesComeBackFromTheOtherSide) {
   const std::vector<Index> moved =
       unfold(leg, vertex_faces(leg.mesh), placement, normals, Context());
   EXPECT_EQ(moved, std::vector<Index>{strayed});
-  EXPECT_LT((leg.mesh.positions[strayed] - Vec3(radius, 0, 0)).norm(), 0.1);
+  EXPECT_LT((leg.mesh.positions[strayed] - Vec3(static_cast<float>(radius), 0, 0)).norm(), 0.1);
   EXPECT_GT(normals[strayed].x(), 0.9f);
 }
 

@@ -90,8 +90,8 @@ void go_on(Ways& ways, const Extraction& extraction, const VertexFaces& around, 
       [&](std::size_t begin, std::size_t end, std::vector<Source>& found) {
         for (auto i = static_cast<Index>(begin); i < end; ++i) {
           if (ways.vertex[i] == no_index) continue;
-          const auto around = graph.neighbors_of(i);
-          if (std::any_of(around.begin(), around.end(),
+          const auto neighbors = graph.neighbors_of(i);
+          if (std::any_of(neighbors.begin(), neighbors.end(),
                           [&](Index j) { return ways.vertex[j] == no_index; })) {
             found.push_back({0, i});
           }
