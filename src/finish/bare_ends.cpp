@@ -84,24 +84,25 @@ Ways straight_ways(const Extraction& extraction, const VertexFaces& around, cons
 /// Goes on over the graph to the nodes that no vertex reaches, from those beside them.
 void go_on(Ways& ways, const Extraction& extraction, const VertexFaces& around, const Graph& graph,
            const Context& context) {
-  using Source = std::pair<float, Index>;
-  auto sources = collect<Source>(
+  const auto beside = collect<Index>(
       graph.size(),
-      [&](std::size_t begin, std::size_t end, std::vector<Source>& found) {
+      [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
         for (auto i = static_cast<Index>(begin); i < end; ++i) {
           if (ways.vertex[i] == no_index) continue;
           const auto neighbors = graph.neighbors_of(i);
           if (std::any_of(neighbors.begin(), neighbors.end(),
                           [&](Index j) { return ways.vertex[j] == no_index; })) {
-            found.push_back({0, i});
+            found.push_back(i);
           }
         }
       },
       context);
-  for (auto& [length, i] : sources) {
-    ways.vertex[i] = walk_to_nearest(graph.positions[i], extraction.mesh, around, ways.vertex[i]);
-    length = (graph.positions[i] - extraction.mesh.positions[ways.vertex[i]]).norm();
-    ways.length[i] = length;
+  std::vector<std::pair<float, Index>> sources;
+  for (const Index i : beside) {
+    const Vec3& p = graph.positions[i];
+    ways.vertex[i] = walk_to_nearest(p, extraction.mesh, around, ways.vertex[i]);
+    ways.length[i] = (p - extraction.mesh.positions[ways.vertex[i]]).norm();
+    sources.push_back({ways.length[i], i});
   }
   const auto lower = [&](Index i, Index j) {
     const float farther = ways.length[i] + (graph.positions[j] - graph.positions[i]).norm();

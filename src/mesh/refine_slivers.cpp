@@ -5,13 +5,14 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <queue>
+#include <set>
 #include <tuple>
-#include <unordered_map>
-#include <unordered_set>
 #include <utility>
 #include <vector>
 
+#include "mesh/border.h"
 #include "mesh/midpoint.h"
 #include "util/edge_of.h"
 #include "util/sum.h"
@@ -20,11 +21,6 @@ namespace meshgrain {
 namespace {
 
 using Vec3d = Eigen::Vector3d;
-
-std::uint64_t key_of(Index a, Index b) {
-  const auto [low, high] = edge_of(a, b);
-  return (std::uint64_t{low} << 32) | high;
-}
 
 /// How many vertices subdivide() makes of a face if that is a sliver, else 0.
 double vertices_of_sliver(const Mesh& mesh, std::size_t f, double limit) {
@@ -44,7 +40,7 @@ double vertices_of_sliver(const Mesh& mesh, std::size_t f, double limit) {
 /// The triangles of a mesh, with those across their edges, so that edges can be split and turned.
 class Refinement {
  public:
-  Refinement(Mesh& mesh, double limit);
+  Refinement(Mesh& mesh, double limit, const Context& context);
 
   void run(const Context& context);
   /// Gives the mesh what has become of its triangles and marks.
@@ -65,7 +61,12 @@ class Refinement {
     return (mesh_.positions[corner(next(h))] - mesh_.positions[corner(h)]).squaredNorm();
   }
 
-  void connect();
+  void connect(const Context& context);
+  /// The side of a triangle from vertex `from` on.
+  Index side(Index triangle, Index from) const {
+    const auto& corners = triangles_[triangle].corners;
+    return 3 * triangle + (corners[0] == from ? 0 : corners[1] == from ? 1 : 2);
+  }
   void link(Index h, Index other) {
     triangles_[h / 3].across[h % 3] = other;
     if (other != no_index) triangles_[other / 3].across[other % 3] = h;
@@ -90,22 +91,23 @@ class Refinement {
   const double limit_;
   std::vector<Triangle> triangles_;
   std::vector<std::uint8_t> at_rim_;  // of each vertex: at an edge not between two triangles
-  std::unordered_set<std::uint64_t> marked_;
-  std::unordered_map<std::uint64_t, Index> midpoints_;  // of edges that are not between two faces
+  std::set<std::array<Index, 2>> marked_;
+  std::map<std::array<Index, 2>, Index> midpoints_;  // of edges that are not between two triangles
   std::priority_queue<LongEdge> queue_;
   std::vector<Index> to_check_;  // edges that may not be Delaunay
   std::size_t most_turns_ = 0;
 };
 
-Refinement::Refinement(Mesh& mesh, double limit) : mesh_(mesh), limit_(limit) {
+Refinement::Refinement(Mesh& mesh, double limit, const Context& context)
+    : mesh_(mesh), limit_(limit) {
   triangles_.reserve(2 * mesh.faces.size());
   at_rim_.assign(mesh.positions.size(), 0);
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     const auto face = std::as_const(mesh.faces)[f];
     triangles_.push_back({{face[0], face[1], face[2]}, {no_index, no_index, no_index}});
   }
-  connect();
-  for (const auto& [a, b] : mesh.marked_edges) marked_.insert(key_of(a, b));
+  connect(context);
+  for (const auto& [a, b] : mesh.marked_edges) marked_.insert(edge_of(a, b));
   for (Index h = 0; h < 3 * triangles_.size(); ++h) {
     push_if_long(h);
     if (squared_length(h) > limit * limit) to_check_.push_back(h);
@@ -113,27 +115,12 @@ Refinement::Refinement(Mesh& mesh, double limit) : mesh_(mesh), limit_(limit) {
 }
 
 /// Links the two sides of every edge that lies between two triangles of the same orientation.
-void Refinement::connect() {
-  struct Side {
-    std::uint64_t edge;
-    Index h;
-    bool operator<(const Side& o) const { return std::tie(edge, h) < std::tie(o.edge, o.h); }
-  };
-  std::vector<Side> sides;
-  for (Index h = 0; h < 3 * triangles_.size(); ++h) {
-    sides.push_back({key_of(corner(h), corner(next(h))), h});
+void Refinement::connect(const Context& context) {
+  const auto all = [](const InnerEdge&) { return true; };
+  for (const auto& [ends, left, right] : inner_edges(mesh_, all, context)) {
+    link(side(left, ends[0]), side(right, ends[1]));
   }
-  std::sort(sides.begin(), sides.end());
-  for (std::size_t k = 0; k < sides.size();) {
-    const std::size_t first = k;
-    while (k < sides.size() && sides[k].edge == sides[first].edge) ++k;
-    const Index h = sides[first].h, other = sides[k - 1].h;
-    if (k - first == 2 && corner(h) != corner(other)) {
-      link(h, other);
-    } else {
-      at_rim_[corner(h)] = at_rim_[corner(next(h))] = 1;
-    }
-  }
+  for (const auto& [a, b] : rim_edges(mesh_, context)) at_rim_[a] = at_rim_[b] = 1;
 }
 
 void Refinement::push_if_long(Index h) {
@@ -165,13 +152,13 @@ Index Refinement::midpoint(Index h) {
   const Index a = corner(h), b = corner(next(h));
   const auto added = static_cast<Index>(mesh_.positions.size());
   if (across(h) == no_index) {
-    const auto [known, is_new] = midpoints_.try_emplace(key_of(a, b), added);
+    const auto [known, is_new] = midpoints_.try_emplace(edge_of(a, b), added);
     if (!is_new) return known->second;
   }
   append_midpoint(mesh_, a, b);
-  if (marked_.erase(key_of(a, b)) > 0) {
-    marked_.insert(key_of(a, added));
-    marked_.insert(key_of(added, b));
+  if (marked_.erase(edge_of(a, b)) > 0) {
+    marked_.insert(edge_of(a, added));
+    marked_.insert(edge_of(added, b));
   }
   at_rim_.push_back(across(h) == no_index);
   return added;
@@ -217,7 +204,7 @@ bool Refinement::should_turn(Index h) const {
   const Index other = across(h);
   if (other == no_index) return false;
   const Index a = corner(h), b = corner(next(h)), c = corner(last(h)), d = corner(last(other));
-  if (c == d || marked_.contains(key_of(a, b))) return false;
+  if (c == d || marked_.contains(edge_of(a, b))) return false;
   const Vec3d pa = point(a), pb = point(b), pc = point(c), pd = point(d);
   const Vec3d left = (pb - pa).cross(pc - pa), right = (pd - pa).cross(pb - pa);
   // Opposite angles add up to more than half a turn.
@@ -281,12 +268,7 @@ void Refinement::put_back() {
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     std::ranges::copy(triangles_[t].corners, mesh_.faces[t].begin());
   }
-  std::vector<std::uint64_t> marks(marked_.begin(), marked_.end());
-  std::sort(marks.begin(), marks.end());
-  mesh_.marked_edges.clear();
-  for (const std::uint64_t key : marks) {
-    mesh_.marked_edges.push_back({static_cast<Index>(key >> 32), static_cast<Index>(key)});
-  }
+  mesh_.marked_edges.assign(marked_.begin(), marked_.end());
 }
 
 }  // namespace
@@ -302,7 +284,7 @@ void refine_slivers(Mesh& mesh, double max_length, const Context& context) {
       },
       context);
   if (made <= few * static_cast<double>(mesh.positions.size())) return;
-  Refinement refinement(mesh, max_length);
+  Refinement refinement(mesh, max_length, context);
   refinement.run(context);
   refinement.put_back();
 }
