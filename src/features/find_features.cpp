@@ -38,8 +38,8 @@ std::vector<EdgeOfLine> feature_edges(const Mesh& mesh, const FeatureOptions& op
   Edges rim, creases, marked;
   if (options.creases == Creases::automatic) {
     auto found = rim_and_sharp_edges(mesh, flat_degrees, context);
+    creases = mechanical_creases(mesh, found, 1);
     rim = std::move(found.rim);
-    creases = mechanical_creases(mesh, found.sharp, 1);
   } else if (options.creases == Creases::by_angle) {
     auto found = rim_and_sharp_edges(mesh, options.crease_degrees, context);
     rim = std::move(found.rim);

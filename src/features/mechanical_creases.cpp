@@ -4,10 +4,14 @@
 #include <limits>
 #include <numbers>
 
+#include "features/clean_lines.h"
+
 namespace meshgrain {
 namespace {
 
 constexpr double sharp = 40;  // degrees
+// Of sculptures and scans it is hardly ever more than a half.
+constexpr double clean_enough = 0.8;
 
 bool is_above(const SharpEdge& edge, double degrees) {
   return edge.cosine < std::cos(degrees * std::numbers::pi / 180);
@@ -31,14 +35,18 @@ CreaseLengths crease_lengths(const Mesh& mesh, std::span<const SharpEdge> edges)
 
 std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh, double clearly,
                                                      const Context& context) {
-  return mechanical_creases(mesh, sharp_edges(mesh, flat_degrees, context), clearly);
+  return mechanical_creases(mesh, rim_and_sharp_edges(mesh, flat_degrees, context), clearly);
 }
 
 std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh,
-                                                     std::span<const SharpEdge> edges,
+                                                     const RimAndSharpEdges& found,
                                                      double clearly) {
+  const std::vector<SharpEdge>& edges = found.sharp;
   const CreaseLengths lengths = crease_lengths(mesh, edges);
-  if (lengths.clear <= clearly * lengths.doubtful) return {};
+  if (lengths.clear <= clearly * lengths.doubtful &&
+      share_of_clean_lines(mesh, found, sharp) < clean_enough) {
+    return {};
+  }
   // The threshold is where it matters least.
   double threshold = sharp, least = std::numeric_limits<double>::infinity();
   constexpr double lowest = 20, window = 1.25, step = 2;

@@ -22,9 +22,10 @@ CreaseLengths crease_lengths(const Mesh& triangles, std::span<const SharpEdge> e
 
 /// The creases of a mechanical part; nothing for a sculpture or a scan, whose sharp edges are
 /// detail or noise. In a part edges are either nearly flat or creases, of which there are `clearly`
-/// times as much as of all in between. `edges` are all that are not flat.
+/// times as much as of all in between; or, where coarse facets round it, its sharp edges make clean
+/// lines. `edges` are all that are not flat.
 std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& triangles,
-                                                     std::span<const SharpEdge> edges,
+                                                     const RimAndSharpEdges& edges,
                                                      double clearly);
 std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& triangles, double clearly,
                                                      const Context& context);

@@ -11,10 +11,18 @@
 namespace meshgrain {
 namespace {
 
-/// The faces of an edge: how many run along it in either direction, and one of each.
+/// The faces of an edge: how many run along it in either direction, and one of each; or if there are
+/// only two and they run in the same direction, these.
 struct EdgeFaces {
   int forth = 0, back = 0;
   Index left = no_index, right = no_index;
+
+  void add(Index face, bool runs_forth) {
+    ++(runs_forth ? forth : back);
+    Index &own = runs_forth ? left : right, &other = runs_forth ? right : left;
+    if (forth + back == 2 && own != no_index) other = own;
+    own = face;
+  }
 };
 
 /// Calls `take(a, b, faces, out)` for every edge a < b.
@@ -44,10 +52,7 @@ std::vector<Selected> select_edges(const Mesh& mesh, const Take& take, const Con
       for (std::size_t k = 0; k < uses.size();) {
         EdgeFaces faces;
         const Index b = uses[k].other;
-        for (; k < uses.size() && uses[k].other == b; ++k) {
-          ++(uses[k].forth ? faces.forth : faces.back);
-          (uses[k].forth ? faces.left : faces.right) = uses[k].face;
-        }
+        for (; k < uses.size() && uses[k].other == b; ++k) faces.add(uses[k].face, uses[k].forth);
         take(a, b, faces, out);
       }
     }
@@ -88,6 +93,16 @@ std::vector<InnerEdge> inner_edges(const Mesh& mesh,
         if (faces.forth != 1 || faces.back != 1) return;
         const InnerEdge edge{{a, b}, faces.left, faces.right};
         if (wanted(edge)) out.push_back(edge);
+      },
+      context);
+}
+
+std::vector<TwoFacedEdge> two_faced_edges(const Mesh& mesh, const Context& context) {
+  return select_edges<TwoFacedEdge>(
+      mesh,
+      [](Index a, Index b, const EdgeFaces& faces, std::vector<TwoFacedEdge>& out) {
+        if (faces.forth + faces.back != 2) return;
+        out.push_back({{a, b}, {faces.left, faces.right}, faces.forth == 1});
       },
       context);
 }

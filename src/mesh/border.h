@@ -29,6 +29,14 @@ std::vector<InnerEdge> inner_edges(const Mesh& mesh,
                                    const std::function<bool(const InnerEdge&)>& wanted,
                                    const Context& context = Context(1));
 
+/// An edge between two faces, the smaller index first, and whether they run along it in opposite
+/// directions.
+struct TwoFacedEdge {
+  std::array<Index, 2> ends, faces;
+  bool agree;
+};
+std::vector<TwoFacedEdge> two_faced_edges(const Mesh& mesh, const Context& context);
+
 /// An edge between two faces, the smaller index first, and the cosine of the angle between their
 /// normals.
 struct SharpEdge {

@@ -16,4 +16,17 @@ std::vector<std::string> describe(const CleanReport& cleaned) {
   return notes;
 }
 
+std::vector<std::string> describe(const OrientReport& oriented) {
+  std::vector<std::string> notes;
+  if (oriented.turned_faces > 0) {
+    notes.push_back("turned " + std::to_string(oriented.turned_faces) +
+                    " faces to the side of their neighbours");
+  }
+  if (oriented.one_sided_pieces > 0) {
+    notes.push_back("cut " + std::to_string(oriented.one_sided_pieces) +
+                    " pieces open along a short curve, as they have only one side");
+  }
+  return notes;
+}
+
 }  // namespace meshgrain
