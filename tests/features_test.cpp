@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <numbers>
 
 #include "kept_creases.h"
 #include "mesh/border.h"
@@ -64,6 +65,49 @@ TEST(Features, NothingIsFoundOnRoundShapes) {
     mesh.positions[v] += step * Vec3(std::sin(12.9f * x), std::sin(78.2f * x), std::sin(37.7f * x));
   }
   EXPECT_TRUE(features_of(mesh).empty());
+}
+
+/// A long prism with so many sides, as a coarse cylinder.
+Mesh prism(Index sides, float height) {
+  Mesh mesh;
+  for (Index i = 0; i < 2 * sides; ++i) {
+    const float angle =
+        2 * std::numbers::pi_v<float> * static_cast<float>(i / 2) / static_cast<float>(sides);
+    mesh.positions.push_back({std::cos(angle), std::sin(angle), i % 2 == 0 ? 0 : height});
+  }
+  for (const float z : {0.0f, height}) mesh.positions.push_back({0, 0, z});
+  for (Index i = 0; i < 2 * sides; i += 2) {
+    const Index a = i, b = (i + 2) % (2 * sides), up = 2 * sides;
+    mesh.faces.push_back({a, b, b + 1});
+    mesh.faces.push_back({a, b + 1, a + 1});
+    mesh.faces.push_back({b, a, up});
+    mesh.faces.push_back({a + 1, b + 1, up + 1});
+  }
+  return mesh;
+}
+
+/// The edges between facets are longer than the creases by far, but these are clean lines.
+TEST(Features, CreasesAreFoundAmongCoarseFacets) {
+  Mesh mesh = prism(24, 20);
+  for (const double longest : {100.0, 1.0, 0.2}) {
+    subdivide(mesh, longest, Context(1));
+    const FeatureLines lines = find_features(mesh, {}, 0.2);
+    ASSERT_EQ(lines.size(), 2u) << longest;
+    EXPECT_TRUE(lines.is_closed(0) && lines.is_closed(1));
+    for (const Vec3& p : lines.positions) EXPECT_TRUE(p.z() == 0 || p.z() == 20);
+  }
+}
+
+/// Faces cannot keep the two rims of a thin sheet apart.
+TEST(Features, OfCreasesBesideEachOtherTheFirstStays) {
+  Mesh sheet = sample_shape("cube");
+  for (Vec3& p : sheet.positions) p.z() *= 0.01f;
+  const FeatureLines all = find_features(sheet, {}, 0.01), some = find_features(sheet, {}, 0.2);
+  EXPECT_EQ(all.size(), 12u);
+  EXPECT_EQ(all.corners.size(), 8u);
+  EXPECT_EQ(some.size(), 4u);
+  EXPECT_EQ(some.corners.size(), 4u);
+  for (const Vec3& p : some.positions) EXPECT_FLOAT_EQ(p.z(), some.positions[0].z());
 }
 
 TEST(Features, CreasesAndCornersAreKept) {

@@ -148,7 +148,7 @@ TEST(Guides, AreCutIntoTheSurfaceWhichStaysTheSame) {
 
 TEST(Guides, EndAtLinesCloseBy) {
   const Mesh plate = sample_shape("plate");
-  const std::vector<EdgeOfLine> border = feature_edges(plate, {}, Context());
+  const std::vector<EdgeOfLine> border = feature_edges(plate, {}, 0.1, Context());
   const double edge = 0.05;
   const auto runs = [&](const std::vector<Guide>& guides) {
     return trace_guides(plate, guides, border, edge, 1).runs;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <map>
 #include <numeric>
@@ -142,6 +143,17 @@ TEST(Hierarchy, MergesStars) {
   const Hierarchy hierarchy = build_hierarchy(made_graph(501, edges));
   expect_consistent(hierarchy);
   EXPECT_EQ(hierarchy.levels.size(), 2u);
+}
+
+/// Vertices of slivers only: proposals went around in circles, and the matching never ended.
+TEST(Hierarchy, NodesWithoutAreaAreMatchedLikeOthers) {
+  Graph graph = build_graph(sample_shape("sphere", 0.5));
+  for (Index i = 0; i < graph.size(); ++i) {
+    if (hash64(i) % 2 == 0) graph.areas[i] = 0;
+    const float angle = 2 * unit_float(hash64(1, i));
+    graph.normals[i] = {std::cos(angle), std::sin(angle), 0};
+  }
+  EXPECT_EQ(build_hierarchy(graph).levels.back().size(), 1u);
 }
 
 TEST(Hierarchy, OfNothingOrOneNodeHasOneLevel) {

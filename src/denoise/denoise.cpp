@@ -45,7 +45,9 @@ bool is_noisy_part(const Mesh& triangles, const Context& context) {
   if (hint.clear < margin * hint.doubtful) return false;
   const CreaseLengths found = lengths_without_noise(sample, context);
   if (found.clear <= margin * clearly * found.doubtful) return false;
-  return mechanical_creases(triangles, 1, context).empty();  // else there are creases without noise
+  // Else there are creases without noise.
+  return mechanical_creases(triangles, rim_and_sharp_edges(triangles, flat_degrees, context))
+      .empty();
 }
 
 }  // namespace
@@ -54,7 +56,7 @@ bool sharpen_noisy_part(Mesh& triangles, double edge_length, const Context& cont
   if (!is_noisy_part(triangles, context)) return false;
   Mesh smooth = triangles;
   NormalFilter(smooth, NormalFilter::Border::stays, context).run();
-  const auto found = mechanical_creases(smooth, clearly, context);
+  const auto found = clear_creases(smooth, sharp_edges(smooth, flat_degrees, context), clearly);
   if (found.empty()) return false;
   const auto creases = connect_creases(smooth, found, edge_length, context);
   smooth.marked_edges.insert(smooth.marked_edges.end(), creases.begin(), creases.end());

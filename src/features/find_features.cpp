@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "features/leave_out_creases.h"
 #include "features/mechanical_creases.h"
 #include "mesh/border.h"
 #include "mesh/marks.h"
@@ -34,11 +35,11 @@ bool FeatureLines::is_closed(std::size_t line) const {
 }
 
 std::vector<EdgeOfLine> feature_edges(const Mesh& mesh, const FeatureOptions& options,
-                                      const Context& context) {
+                                      double edge_length, const Context& context) {
   Edges rim, creases, marked;
   if (options.creases == Creases::automatic) {
     auto found = rim_and_sharp_edges(mesh, flat_degrees, context);
-    creases = mechanical_creases(mesh, found, 1);
+    creases = mechanical_creases(mesh, found);
     rim = std::move(found.rim);
   } else if (options.creases == Creases::by_angle) {
     auto found = rim_and_sharp_edges(mesh, options.crease_degrees, context);
@@ -55,12 +56,12 @@ std::vector<EdgeOfLine> feature_edges(const Mesh& mesh, const FeatureOptions& op
     const bool is_marked = std::binary_search(marked.begin(), marked.end(), ends);
     if (!is_marked) edges.push_back({ends, LineKind::crease});
   }
-  return edges;
+  return leave_out_creases_beside_lines(mesh, edges, edge_length);
 }
 
 FeatureLines find_features(const Mesh& mesh, const FeatureOptions& options,
                            const GuideLines& guides, double edge_length, const Context& context) {
-  std::vector<EdgeOfLine> edges = feature_edges(mesh, options, context);
+  std::vector<EdgeOfLine> edges = feature_edges(mesh, options, edge_length, context);
   std::vector<std::array<Index, 2>> others;
   for (const EdgeOfLine& edge : edges) others.push_back(edge.ends);
   std::sort(others.begin(), others.end());
@@ -85,7 +86,8 @@ FeatureLines find_features(const Mesh& mesh, const FeatureOptions& options,
 
 FeatureLines find_features(const Mesh& mesh, const FeatureOptions& options, double edge_length,
                            const Context& context) {
-  return chain_edges(mesh, feature_edges(mesh, options, context), options, edge_length);
+  return chain_edges(mesh, feature_edges(mesh, options, edge_length, context), options,
+                     edge_length);
 }
 
 }  // namespace meshgrain

@@ -7,9 +7,10 @@
 
 namespace meshgrain {
 
-/// The edges of the border and of the creases, each once.
+/// The edges of the border and of the creases, each once, but for creases that faces with sides of
+/// `edge_length` could not follow.
 std::vector<EdgeOfLine> feature_edges(const Mesh& triangles, const FeatureOptions& options,
-                                      const Context& context);
+                                      double edge_length, const Context& context);
 
 /// The public find_features() with guides that were cut into the mesh. Those that run along a
 /// border or a crease are part of that.

@@ -26,28 +26,9 @@ double length_above(const Mesh& mesh, std::span<const SharpEdge> edges, double d
   return sum;
 }
 
-}  // namespace
-
-CreaseLengths crease_lengths(const Mesh& mesh, std::span<const SharpEdge> edges) {
-  const double clear = length_above(mesh, edges, sharp);
-  return {clear, length_above(mesh, edges, flat_degrees) - clear};
-}
-
-std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh, double clearly,
-                                                     const Context& context) {
-  return mechanical_creases(mesh, rim_and_sharp_edges(mesh, flat_degrees, context), clearly);
-}
-
-std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh,
-                                                     const RimAndSharpEdges& found,
-                                                     double clearly) {
-  const std::vector<SharpEdge>& edges = found.sharp;
-  const CreaseLengths lengths = crease_lengths(mesh, edges);
-  if (lengths.clear <= clearly * lengths.doubtful &&
-      share_of_clean_lines(mesh, found, sharp) < clean_enough) {
-    return {};
-  }
-  // The threshold is where it matters least.
+/// Those sharper than an angle at which it matters least.
+std::vector<std::array<Index, 2>> above_best_threshold(const Mesh& mesh,
+                                                       std::span<const SharpEdge> edges) {
   double threshold = sharp, least = std::numeric_limits<double>::infinity();
   constexpr double lowest = 20, window = 1.25, step = 2;
   for (double degrees = sharp; degrees >= lowest; degrees -= step) {
@@ -62,6 +43,29 @@ std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh,
     if (is_above(edge, threshold)) result.push_back(edge.ends);
   }
   return result;
+}
+
+}  // namespace
+
+CreaseLengths crease_lengths(const Mesh& mesh, std::span<const SharpEdge> edges) {
+  const double clear = length_above(mesh, edges, sharp);
+  return {clear, length_above(mesh, edges, flat_degrees) - clear};
+}
+
+std::vector<std::array<Index, 2>> clear_creases(const Mesh& mesh, std::span<const SharpEdge> edges,
+                                                double clearly) {
+  const CreaseLengths lengths = crease_lengths(mesh, edges);
+  if (lengths.clear <= clearly * lengths.doubtful) return {};
+  return above_best_threshold(mesh, edges);
+}
+
+std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh,
+                                                     const RimAndSharpEdges& edges) {
+  const CreaseLengths lengths = crease_lengths(mesh, edges.sharp);
+  const bool is_mechanical =
+      lengths.clear > lengths.doubtful || share_of_clean_lines(mesh, edges, sharp) > clean_enough;
+  if (!is_mechanical) return {};
+  return above_best_threshold(mesh, edges.sharp);
 }
 
 }  // namespace meshgrain

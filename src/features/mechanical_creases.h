@@ -20,14 +20,15 @@ struct CreaseLengths {
 };
 CreaseLengths crease_lengths(const Mesh& triangles, std::span<const SharpEdge> edges);
 
+/// The edges sharper than an angle at which it matters least, if there is `clearly` more of clear
+/// creases than of what is neither sharp nor flat; else none. `edges` are all that are not flat.
+std::vector<std::array<Index, 2>> clear_creases(const Mesh& triangles,
+                                                std::span<const SharpEdge> edges, double clearly);
+
 /// The creases of a mechanical part; nothing for a sculpture or a scan, whose sharp edges are
-/// detail or noise. In a part edges are either nearly flat or creases, of which there are `clearly`
-/// times as much as of all in between; or, where coarse facets round it, its sharp edges make clean
-/// lines. `edges` are all that are not flat.
+/// detail or noise. In a part most edges are either nearly flat or creases; or, where coarse facets
+/// round it, its sharp edges make clean lines. `edges` are all that are not flat.
 std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& triangles,
-                                                     const RimAndSharpEdges& edges,
-                                                     double clearly);
-std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& triangles, double clearly,
-                                                     const Context& context);
+                                                     const RimAndSharpEdges& edges);
 
 }  // namespace meshgrain

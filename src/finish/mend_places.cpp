@@ -27,8 +27,10 @@ class Mending {
   void run() {
     if (!options_.is_part) part_crossings();
     failed_slides_ = 0;
+    effort_left_ = 0;
     for (const Demands& demands : ever_less) {
       demands_ = demands;
+      effort_left_ += effort();
       for (const int rings : ever_wider) reshape_all(rings);
     }
   }
@@ -65,13 +67,23 @@ class Mending {
   static constexpr std::size_t faces_a_failed_slide = 4000;
   // A mesh with more bad places is too coarse for its surface: no need to try for minutes.
   static constexpr std::size_t most_tried = 50;
+  // For the same reason all that is tried for one of the demands has an end: in steps of a face.
+  static constexpr double effort_for_a_mesh = 1500000, effort_for_a_part = 100000;
+  static constexpr double effort_a_face = 60, effort_to_slide_a_face = 1500;
   static constexpr std::size_t tries = 6;              // that a face takes part in without success
   static constexpr std::size_t most_searched = 20000;  // faces of the surface in a place
+
+  double effort() const {
+    return options_.is_part
+               ? effort_for_a_part
+               : effort_for_a_mesh + effort_a_face * static_cast<double>(mesh_.faces.size());
+  }
 
   void part_crossings() {
     std::vector<std::uint8_t> inherent(mesh_.faces.size(), 0);  // beside crossings of the surface
     for (const Demands& demands : ever_less) {
       demands_ = demands;
+      effort_left_ += effort();
       bool few = true;
       for (const int rings : ever_wider) {
         const auto crossings = find_crossings(mesh_, context_);
@@ -97,7 +109,7 @@ class Mending {
         inherent[f] = inherent[g] = 1;
         continue;
       }
-      if (++tried > most_tried) return false;
+      if (++tried > most_tried || effort_left_ <= 0) return false;
       --place.crossings;
       if (part(place)) continue;
       restore(place);
@@ -110,7 +122,7 @@ class Mending {
     std::size_t tried = 0;
     for (Index f = 0; f < mesh_.faces.size(); ++f) {
       if (!is_bad(f)) continue;
-      if (++tried > std::max(most_tried, mesh_.faces.size() / 100)) break;
+      if (++tried > std::max(most_tried, mesh_.faces.size() / 100) || effort_left_ <= 0) break;
       Place place = around(f, f, rings);
       --place.bad;
       place.may_cross = place.crossings > 0 && !options_.is_part && surface_crosses(place);
@@ -232,6 +244,7 @@ class Mending {
 
   /// Over the surface. Returns whether the place is mended.
   bool slide(const Place& place) {
+    effort_left_ -= effort_to_slide_a_face * static_cast<double>(place.faces.size());
     search_.keep_apart(place.may_cross ? std::vector<Index>() : place.faces);
     for (const Index v : place.vertices) search_.touch(v);
     constexpr int sweeps = 5;
@@ -265,6 +278,7 @@ class Mending {
     constexpr int steps = 30;
     const float farthest = mean_edge(place);
     for (int step = 0; step < steps && !is_mended(place); ++step) {
+      effort_left_ -= static_cast<double>(place.faces.size());
       std::vector<Vec3> next;
       for (std::size_t k = 0; k < place.vertices.size(); ++k) {
         const Index v = place.vertices[k];
@@ -287,6 +301,7 @@ class Mending {
   const SmoothOptions& options_;
   Demands demands_ = ever_less[0];
   std::size_t failed_slides_ = 0;
+  double effort_left_ = 0;
   const Context& context_;
 };
 

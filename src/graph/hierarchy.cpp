@@ -25,8 +25,8 @@ Index best_neighbor(const Graph& graph, Index i, const Admits& admits) {
   std::uint64_t best_hash = 0;
   for (const Index j : graph.neighbors_of(i)) {
     if (!admits(j)) continue;
-    const float a = graph.areas[i], b = graph.areas[j];
-    const float ratio = a < b ? a / b : b > 0 ? b / a : 1.0f;
+    const auto [smaller, larger] = std::minmax(graph.areas[i], graph.areas[j]);
+    const float ratio = larger > 0 ? smaller / larger : 1.0f;
     const Index low = std::min(i, j), high = std::max(i, j);
     const float score = std::max(graph.normals[low].dot(graph.normals[high]), 0.0f) * ratio;
     if (score < best_score) continue;

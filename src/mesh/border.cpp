@@ -11,8 +11,8 @@
 namespace meshgrain {
 namespace {
 
-/// The faces of an edge: how many run along it in either direction, and one of each; or if there are
-/// only two and they run in the same direction, these.
+/// The faces of an edge: how many run along it in either direction, and one of each; or if there
+/// are only two and they run in the same direction, these.
 struct EdgeFaces {
   int forth = 0, back = 0;
   Index left = no_index, right = no_index;

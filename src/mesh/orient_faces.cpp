@@ -94,9 +94,7 @@ class Orienting {
  private:
   enum Side : std::uint8_t { as_it_is, turned, unknown };
 
-  std::span<const Index> corners(std::size_t f) const {
-    return std::as_const(mesh_.faces)[f];
-  }
+  std::span<const Index> corners(std::size_t f) const { return std::as_const(mesh_.faces)[f]; }
   Side across(Side side, bool agrees) const {
     return agrees == (side == as_it_is) ? as_it_is : turned;
   }

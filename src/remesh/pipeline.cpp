@@ -429,7 +429,10 @@ void Pipeline::lay_guides(double edge_length) {
     }
     std::vector<EdgeOfLine> lines;
     const bool cut = !is_cloud_ && nodes_are_vertices_;
-    if (cut) lines = feature_edges(surface_, options_.features, context_);
+    if (cut) {
+      const double side = target_.face_side(surface_area(surface_, context_));
+      lines = feature_edges(surface_, options_.features, side, context_);
+    }
     TracedGuides traced = trace_guides(surface_, guides, lines, edge_length, frame_.scale);
     result_.report.notes.insert(result_.report.notes.end(), traced.notes.begin(),
                                 traced.notes.end());

@@ -1,0 +1,166 @@
+#include "features/leave_out_creases.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "features/line_samples.h"
+#include "util/edge_of.h"
+
+namespace meshgrain {
+namespace {
+
+using Point = Eigen::Vector3d;
+
+// In lengths of an edge.
+constexpr double near = 0.1;
+constexpr double step = 0.05;      // between samples of a line
+constexpr double least_run = 0.5;  // where lines meet at a small angle, they are near for less
+constexpr double twig = 0.3;       // is left out if it then leads nowhere
+
+class Leaving {
+ public:
+  Leaving(const Mesh& mesh, const std::vector<EdgeOfLine>& edges, double edge_length)
+      : mesh_(mesh), edge_length_(edge_length), others_(near * edge_length) {
+    for (const EdgeOfLine& edge : edges)
+      kinds_.emplace(edge_of(edge.ends[0], edge.ends[1]), edge.kind);
+    lines_ = chain_edges(mesh, edges, {}, edge_length);
+  }
+
+  std::vector<EdgeOfLine> run() {
+    for (const Index line : by_rank()) {
+      const std::vector<std::uint8_t> out = beside_others(line);
+      for (std::size_t k = 0; k < out.size(); ++k) {
+        if (out[k]) {
+          kinds_.erase(edge(line, k));
+          any_ = true;
+        } else {
+          add_samples(line, k);
+        }
+      }
+    }
+    if (any_) prune();
+    std::vector<EdgeOfLine> left;
+    for (const auto& [ends, kind] : kinds_) left.push_back({ends, kind});
+    return left;
+  }
+
+ private:
+  using Edge = std::array<Index, 2>;
+
+  std::size_t edges_of(Index line) const { return lines_.end(line) - lines_.begin(line) - 1; }
+  Edge edge(Index line, std::size_t k) const {
+    const Index first = lines_.begin(line) + static_cast<Index>(k);
+    return edge_of(lines_.vertices[first], lines_.vertices[first + 1]);
+  }
+  Point point(Index v) const { return mesh_.positions[v].cast<double>(); }
+  double length(const Edge& edge) const { return (point(edge[1]) - point(edge[0])).norm(); }
+
+  /// The lines in the order in which they may stay: those that must first, then longer ones.
+  std::vector<Index> by_rank() const {
+    std::vector<double> rank(lines_.size(), 0);
+    for (Index line = 0; line < lines_.size(); ++line) {
+      if (!may_go(line)) rank[line] = std::numeric_limits<double>::infinity();
+      for (std::size_t k = 0; k < edges_of(line); ++k) rank[line] += length(edge(line, k));
+    }
+    std::vector<Index> order(lines_.size());
+    std::iota(order.begin(), order.end(), Index{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](Index a, Index b) { return rank[a] > rank[b]; });
+    return order;
+  }
+  bool may_go(Index line) const { return kinds_.at(edge(line, 0)) == LineKind::crease; }
+
+  template <typename Visit>
+  void for_samples(const Edge& edge, const Visit& visit) const {
+    const Point from = point(edge[0]), along = point(edge[1]) - from;
+    const double count = std::max(1.0, std::ceil(along.norm() / (step * edge_length_)));
+    for (double k = 0.5; k < count; ++k) visit(Point(from + (k / count) * along));
+  }
+
+  void add_samples(Index line, std::size_t k) {
+    const Edge ends = edge(line, k);
+    const Point along = (point(ends[1]) - point(ends[0])).normalized();
+    for_samples(ends, [&](const Point& p) { others_.add({p, along, Point::Zero(), line, 0}); });
+  }
+
+  bool is_beside_another(const Edge& ends) const {
+    const Point along = (point(ends[1]) - point(ends[0])).normalized();
+    constexpr double alike = 0.9;
+    bool all = true;
+    for_samples(ends, [&](const Point& p) {
+      bool found = false;
+      others_.for_near(p, near * edge_length_, [&](const LineSamples::Sample& other, double) {
+        found = found || std::abs(along.dot(other.direction)) > alike;
+      });
+      all = all && found;
+    });
+    return all;
+  }
+
+  /// Which edges of a line are to be left out: long runs, or all.
+  std::vector<std::uint8_t> beside_others(Index line) const {
+    const std::size_t count = edges_of(line);
+    std::vector<std::uint8_t> out(count, 0);
+    if (!may_go(line)) return out;
+    for (std::size_t k = 0; k < count; ++k) out[k] = is_beside_another(edge(line, k));
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t first = k;
+      double run = 0;
+      for (; k < count && out[k]; ++k) run += length(edge(line, k));
+      const bool is_whole = first == 0 && k == count;
+      if (run < least_run * edge_length_ && !is_whole) {
+        std::fill(out.begin() + static_cast<std::ptrdiff_t>(first),
+                  out.begin() + static_cast<std::ptrdiff_t>(k), std::uint8_t{0});
+      }
+    }
+    return out;
+  }
+
+  /// Leaves out short ends that hang together with nothing else: those that joined two lines, of
+  /// which one is gone.
+  void prune() {
+    std::vector<EdgeOfLine> left;
+    for (const auto& [ends, kind] : kinds_) left.push_back({ends, kind});
+    lines_ = chain_edges(mesh_, left, {}, edge_length_);
+    std::map<Index, int> ends_at;
+    for (Index line = 0; line < lines_.size(); ++line) {
+      ++ends_at[lines_.vertices[lines_.begin(line)]];
+      ++ends_at[lines_.vertices[lines_.end(line) - 1]];
+    }
+    for (Index line = 0; line < lines_.size(); ++line) {
+      if (!may_go(line)) continue;
+      double whole = 0;
+      for (std::size_t k = 0; k < edges_of(line); ++k) whole += length(edge(line, k));
+      const bool leads_nowhere = ends_at[lines_.vertices[lines_.begin(line)]] == 1 ||
+                                 ends_at[lines_.vertices[lines_.end(line) - 1]] == 1;
+      if (!leads_nowhere || whole >= twig * edge_length_) continue;
+      for (std::size_t k = 0; k < edges_of(line); ++k) kinds_.erase(edge(line, k));
+    }
+  }
+
+  const Mesh& mesh_;
+  const double edge_length_;
+  std::map<Edge, LineKind> kinds_;  // of the edges that are left
+  FeatureLines lines_;
+  LineSamples others_;
+  bool any_ = false;
+};
+
+}  // namespace
+
+std::vector<EdgeOfLine> leave_out_creases_beside_lines(const Mesh& mesh,
+                                                       const std::vector<EdgeOfLine>& edges,
+                                                       double edge_length) {
+  const bool has_creases = std::ranges::any_of(
+      edges, [](const EdgeOfLine& edge) { return edge.kind == LineKind::crease; });
+  if (!has_creases || !(edge_length > 0)) return edges;
+  return Leaving(mesh, edges, edge_length).run();
+}
+
+}  // namespace meshgrain
