@@ -242,6 +242,26 @@ TEST(Finish, ClosedLinesAreFollowedAround) {
   EXPECT_EQ(ring.cone.mesh.positions, before);
 }
 
+/// Two that have changed places: on a large hole it would be far for the others to spread evenly.
+TEST(Finish, OnlyVerticesOutOfOrderMoveOnALine) {
+  std::vector<double> start{0, 30, 100, 95, 150, 200, 250, 300};
+  for (int turn = 0; turn < 8; ++turn) {
+    for (const bool is_turned_over : {false, true}) {
+      std::vector<double> degrees = start;
+      if (is_turned_over) std::reverse(degrees.begin(), degrees.end());
+      Ring ring(degrees);
+      ring.go_around();
+      for (Index v = 0; v < ring.count(); ++v) {
+        const bool moves = degrees[v] == 95 || degrees[v] == 100;
+        const Vec3 there = Ring::at(moves ? 97.5 : degrees[v]);
+        EXPECT_LT((ring.cone.mesh.positions[v] - there).norm(), moves ? 0.06 : 0.01) << v;
+        EXPECT_GT(is_turned_over ? 360 - ring.step(v) : ring.step(v), 1) << v;
+      }
+    }
+    std::rotate(start.begin(), start.begin() + 1, start.end());
+  }
+}
+
 /// All of them try to be where one is.
 TEST(Finish, VerticesSlideInOrder) {
   Ring ring({0, 50, 90, 150, 200, 300});
