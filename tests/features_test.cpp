@@ -98,16 +98,24 @@ TEST(Features, CreasesAreFoundAmongCoarseFacets) {
   }
 }
 
-/// Faces cannot keep the two rims of a thin sheet apart.
+/// Faces cannot keep the two rims of a thin sheet apart, if it is very thin or much wider.
 TEST(Features, OfCreasesBesideEachOtherTheFirstStays) {
-  Mesh sheet = sample_shape("cube");
-  for (Vec3& p : sheet.positions) p.z() *= 0.01f;
-  const FeatureLines all = find_features(sheet, {}, 0.01), some = find_features(sheet, {}, 0.2);
-  EXPECT_EQ(all.size(), 12u);
-  EXPECT_EQ(all.corners.size(), 8u);
-  EXPECT_EQ(some.size(), 4u);
-  EXPECT_EQ(some.corners.size(), 4u);
-  for (const Vec3& p : some.positions) EXPECT_FLOAT_EQ(p.z(), some.positions[0].z());
+  const auto lines_of_sheet = [](float thickness, double edge_length) {
+    Mesh sheet = sample_shape("cube");
+    for (Vec3& p : sheet.positions) p.z() *= thickness;
+    return find_features(sheet, {}, edge_length);
+  };
+  const auto whole = {lines_of_sheet(0.01f, 0.01), lines_of_sheet(0.1f, 0.5)};
+  for (const FeatureLines& lines : whole) {
+    EXPECT_EQ(lines.size(), 12u);
+    EXPECT_EQ(lines.corners.size(), 8u);
+  }
+  for (const double edge_length : {0.05, 0.2}) {
+    const FeatureLines lines = lines_of_sheet(0.01f, edge_length);
+    EXPECT_EQ(lines.size(), 4u);
+    EXPECT_EQ(lines.corners.size(), 4u);
+    for (const Vec3& p : lines.positions) EXPECT_FLOAT_EQ(p.z(), lines.positions[0].z());
+  }
 }
 
 TEST(Features, CreasesAndCornersAreKept) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <span>
@@ -18,15 +19,22 @@ namespace {
 using Point = Eigen::Vector3d;
 
 // In lengths of an edge.
-constexpr double near = 0.1;
-constexpr double step = 0.05;      // between samples of a line
-constexpr double least_run = 0.5;  // where lines meet at a small angle, they are near for less
-constexpr double twig = 0.3;       // is left out if it then leads nowhere
+constexpr double step = 0.05;  // between samples of a line
+constexpr double twig = 0.3;   // is left out if it then leads nowhere
+
+/// How near a line may be to another one for how long. Where lines meet at a small angle they are
+/// near for a short way only.
+struct Bound {
+  double distance, length;
+  bool whole_lines;  // also shorter ones, if they are as near all along
+};
+constexpr Bound bounds[] = {{0.1, 0.5, true}, {0.25, 5, false}};
+constexpr double farthest = 0.25;
 
 class Leaving {
  public:
   Leaving(const Mesh& mesh, const std::vector<EdgeOfLine>& edges, double edge_length)
-      : mesh_(mesh), edge_length_(edge_length), others_(near * edge_length) {
+      : mesh_(mesh), edge_length_(edge_length), others_(farthest * edge_length) {
     for (const EdgeOfLine& edge : edges)
       kinds_.emplace(edge_of(edge.ends[0], edge.ends[1]), edge.kind);
     lines_ = chain_edges(mesh, edges, {}, edge_length);
@@ -89,34 +97,39 @@ class Leaving {
     for_samples(ends, [&](const Point& p) { others_.add({p, along, Point::Zero(), line, 0}); });
   }
 
-  bool is_beside_another(const Edge& ends) const {
+  /// How far all of an edge is from other lines that run alike, at most.
+  double distance_from_others(const Edge& ends) const {
     const Point along = (point(ends[1]) - point(ends[0])).normalized();
     constexpr double alike = 0.9;
-    bool all = true;
+    double most = 0;
     for_samples(ends, [&](const Point& p) {
-      bool found = false;
-      others_.for_near(p, near * edge_length_, [&](const LineSamples::Sample& other, double) {
-        found = found || std::abs(along.dot(other.direction)) > alike;
-      });
-      all = all && found;
+      double least = std::numeric_limits<double>::infinity();
+      others_.for_near(p, farthest * edge_length_,
+                       [&](const LineSamples::Sample& other, double distance) {
+                         const bool runs_alike = std::abs(along.dot(other.direction)) > alike;
+                         if (runs_alike) least = std::min(least, distance);
+                       });
+      most = std::max(most, least);
     });
-    return all;
+    return most / edge_length_;
   }
 
-  /// Which edges of a line are to be left out: long runs, or all.
+  /// Which edges of a line are to be left out.
   std::vector<std::uint8_t> beside_others(Index line) const {
     const std::size_t count = edges_of(line);
     std::vector<std::uint8_t> out(count, 0);
     if (!may_go(line)) return out;
-    for (std::size_t k = 0; k < count; ++k) out[k] = is_beside_another(edge(line, k));
-    for (std::size_t k = 0; k < count; ++k) {
-      const std::size_t first = k;
-      double run = 0;
-      for (; k < count && out[k]; ++k) run += length(edge(line, k));
-      const bool is_whole = first == 0 && k == count;
-      if (run < least_run * edge_length_ && !is_whole) {
+    std::vector<double> distance(count);
+    for (std::size_t k = 0; k < count; ++k) distance[k] = distance_from_others(edge(line, k));
+    for (const Bound& bound : bounds) {
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t first = k;
+        double run = 0;
+        for (; k < count && distance[k] < bound.distance; ++k) run += length(edge(line, k));
+        const bool is_whole = first == 0 && k == count;
+        if (run < bound.length * edge_length_ && !(is_whole && bound.whole_lines)) continue;
         std::fill(out.begin() + static_cast<std::ptrdiff_t>(first),
-                  out.begin() + static_cast<std::ptrdiff_t>(k), std::uint8_t{0});
+                  out.begin() + static_cast<std::ptrdiff_t>(k), std::uint8_t{1});
       }
     }
     return out;
