@@ -2,8 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
+#include <vector>
+
+#include "mesh/border.h"
+#include "meshgrain/surface.h"
+#include "meshgrain/triangulate.h"
 
 namespace meshgrain {
 namespace {
@@ -35,6 +41,36 @@ TEST(Clean, RemovesRepeatedCorners) {
   ASSERT_EQ(mesh.faces.degree(0), 4u);
   EXPECT_EQ(mesh.faces[0][1], 1u);
   EXPECT_EQ(mesh.faces[0][2], 2u);
+}
+
+TEST(Clean, RemovesSpikesOfFaces) {
+  Mesh mesh = vertices(6);
+  mesh.faces.push_back({4, 0, 1, 2, 3, 2, 0});
+  mesh.faces.push_back({0, 1, 0, 5, 2, 0});
+  EXPECT_EQ(clean(mesh).repeated_corners, 7u);
+  ASSERT_EQ(mesh.faces.size(), 2u);
+  for (const std::size_t f : {0, 1}) {
+    std::vector<Index> face(mesh.faces[f].begin(), mesh.faces[f].end());
+    std::ranges::sort(face);
+    EXPECT_EQ(face, f == 0 ? std::vector<Index>({0, 1, 2}) : std::vector<Index>({0, 2, 3}));
+  }
+}
+
+/// A square with a square hole, and an edge that joins the two.
+TEST(Clean, PolygonsWithHolesStayWhole) {
+  Mesh mesh;
+  for (const float half : {2.0f, 1.0f}) {
+    mesh.positions.push_back({-half, -half, 0});
+    mesh.positions.push_back({half, -half, 0});
+    mesh.positions.push_back({half, half, 0});
+    mesh.positions.push_back({-half, half, 0});
+  }
+  mesh.faces.push_back({0, 1, 2, 3, 0, 4, 7, 6, 5, 4});
+  EXPECT_FALSE(clean(mesh).any());
+  const Mesh triangles = triangulate(mesh);
+  EXPECT_EQ(triangles.faces.size(), 8u);
+  EXPECT_NEAR(surface_area(triangles), 12, 1e-4);
+  EXPECT_EQ(border_edges(triangles).size(), 8u);
 }
 
 TEST(Clean, RemovesDegenerateFaces) {

@@ -158,9 +158,19 @@ TEST(Triangulate, AnyPolygonGivesAllItsTriangles) {
     for (Index i = 0; i < 4 + f % 5; ++i) face.push_back((f * 7 + i * 11) % 30);
     mesh.faces.push_back(face);
   }
-  std::size_t wanted = 0;
-  for (std::size_t f = 1; f < mesh.faces.size(); ++f) wanted += mesh.faces.degree(f) - 2;
-  EXPECT_EQ(triangulate(mesh).faces.size(), wanted);
+  std::vector<Index> polygon;
+  const Mesh triangles = triangulate(mesh, &polygon);
+  ASSERT_EQ(polygon.size(), triangles.faces.size());
+  for (std::size_t f = 3; f < mesh.faces.size(); ++f) {
+    EXPECT_EQ(std::ranges::count(polygon, f) + 2, mesh.faces.degree(f));
+  }
+  // Of those that repeat vertices, the triangles that do not.
+  for (std::size_t t = 0; t < triangles.faces.size(); ++t) {
+    const auto face = triangles.faces[t];
+    EXPECT_TRUE(face[0] != face[1] && face[1] != face[2] && face[2] != face[0]);
+  }
+  EXPECT_EQ(std::ranges::count(polygon, 1u), 1);
+  EXPECT_EQ(std::ranges::count(polygon, 2u), 0);
 }
 
 }  // namespace

@@ -9,8 +9,9 @@ namespace meshgrain {
 
 /// What clean() took out.
 struct CleanReport {
-  std::size_t repeated_corners = 0;  ///< Corners equal to the one before them in their face.
-  std::size_t degenerate_faces = 0;  ///< Fewer than three corners, or one vertex in two places.
+  /// Corners equal to the one before them in their face, and those between two equal ones.
+  std::size_t repeated_corners = 0;
+  std::size_t degenerate_faces = 0;  ///< Fewer than three corners after that.
   std::size_t duplicate_faces =
       0;  ///< The corners of an earlier face, in the same or reverse order.
   std::size_t unused_vertices = 0;   ///< Of no face that is left.

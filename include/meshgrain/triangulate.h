@@ -11,9 +11,10 @@ namespace meshgrain {
 /// if both do; larger polygons by clipping ears in the polygon's mean plane, those with the
 /// shortest diagonals first. No diagonal repeats an edge or another diagonal as long as there is
 /// another choice, since that would make a non-manifold edge: neighbouring polygons can share so
-/// many vertices that plain fans do. `face_of_triangle`, if wanted, gets the polygon of each
-/// triangle. Takes time linear in the mesh, but within one polygon its corners times its reflex
-/// ones.
+/// many vertices that plain fans do. A polygon may come to a vertex again, as around a hole;
+/// triangles that would repeat one are left out. `face_of_triangle`, if wanted, gets the polygon of
+/// each triangle. Takes time linear in the mesh, but within one polygon its corners times its
+/// reflex ones.
 Mesh triangulate(const Mesh& polygons, std::vector<Index>* face_of_triangle = nullptr);
 
 }  // namespace meshgrain

@@ -20,7 +20,6 @@
 namespace meshgrain {
 namespace {
 
-/// Neighbouring corners are known to differ.
 bool repeats_a_vertex(std::span<const Index> face, std::vector<Index>& scratch) {
   if (face.size() == 3) return false;
   scratch.assign(face.begin(), face.end());
@@ -79,7 +78,25 @@ std::vector<Index> find_duplicates(const Faces& faces, std::size_t vertices,
   return collect<Index>(vertices, duplicates_around, context);
 }
 
-/// Drops repeated corners, and faces without three different ones.
+/// Drops corners equal to their neighbour, and spikes: there and back again.
+void drop_repeats(std::vector<Index>& face) {
+  for (std::size_t k = 0; k < face.size() && face.size() > 1;) {
+    const std::size_t n = face.size(), next = (k + 1) % n, after = (k + 2) % n;
+    const bool is_spike = face[k] == face[after];
+    if (face[k] != face[next] && !is_spike) {
+      ++k;
+      continue;
+    }
+    // The higher place first, as the other one stays where it is then.
+    const auto [low, high] = std::minmax(next, is_spike ? after : k);
+    face.erase(face.begin() + static_cast<std::ptrdiff_t>(high));
+    if (is_spike) face.erase(face.begin() + static_cast<std::ptrdiff_t>(low));
+    k = 0;
+  }
+}
+
+/// Drops repeated corners, and faces without three different ones. A face that comes to a vertex
+/// twice on different ways stays: so polygons with holes are written.
 void drop_repeated_corners(Mesh& mesh, CleanReport& report) {
   std::vector<Index> face, scratch;
   const auto is_good = [&](std::size_t f) {
@@ -97,15 +114,14 @@ void drop_repeated_corners(Mesh& mesh, CleanReport& report) {
   Faces faces;
   faces.reserve(mesh.faces.size(), mesh.faces.corners().size());
   for (f = 0; f < mesh.faces.size(); ++f) {
-    face.clear();
-    for (const Index v : std::as_const(mesh.faces)[f])
-      if (face.empty() || face.back() != v) face.push_back(v);
-    while (face.size() > 1 && face.front() == face.back()) face.pop_back();
+    face.assign(std::as_const(mesh.faces)[f].begin(), std::as_const(mesh.faces)[f].end());
+    if (!is_good(f)) drop_repeats(face);
     report.repeated_corners += mesh.faces.degree(f) - face.size();
-    if (face.size() < 3 || repeats_a_vertex(face, scratch))
+    if (face.size() < 3) {
       ++report.degenerate_faces;
-    else
+    } else {
       faces.push_back(face);
+    }
   }
   mesh.faces = std::move(faces);
 }

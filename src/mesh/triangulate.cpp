@@ -172,6 +172,8 @@ class EarClipper {
     }
   }
 
+  bool is_old(Index a, Index b) const { return a == b || edges_.contains(a, b); }
+
   /// Clips all ears it finds if `ears`, else one corner; returns whether there was any.
   bool pass(bool ears, bool new_edges, std::vector<Triangle>& triangles) {
     std::priority_queue<Ear, std::vector<Ear>, std::greater<>> queue;
@@ -188,7 +190,7 @@ class EarClipper {
       queue.pop();
       const Corner& c = corners_[ear.corner];
       if (c.gone || c.version != ear.version) continue;
-      if (new_edges && edges_.contains(face_[c.previous], face_[c.next])) continue;
+      if (new_edges && is_old(face_[c.previous], face_[c.next])) continue;
       if (ears && !is_ear(ear.corner)) continue;
       clip(ear.corner, triangles);
       any = true;
@@ -242,9 +244,17 @@ Mesh triangulate(const Mesh& polygons, std::vector<Index>* face_of_triangle) {
       split_quad(polygons.positions, face, edges, triangles);
     else if (face.size() > 4)
       EarClipper(polygons.positions, face, edges).run(triangles);
+    std::erase_if(triangles, [](const Triangle& t) {  // of a polygon that repeats a vertex
+      return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+    });
     for (const Triangle& t : triangles) std::copy(t.begin(), t.end(), result.faces[at++].begin());
     if (face_of_triangle)
       face_of_triangle->insert(face_of_triangle->end(), triangles.size(), static_cast<Index>(f));
+  }
+  if (at < count) {
+    Faces fewer = Faces::uniform(at, 3);
+    std::copy_n(std::as_const(result.faces).corners().begin(), 3 * at, fewer.corners().begin());
+    result.faces = std::move(fewer);
   }
   return result;
 }

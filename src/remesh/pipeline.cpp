@@ -60,14 +60,14 @@ Pipeline::Pipeline(const Mesh& input, const RemeshOptions& options, const Contex
 void Pipeline::clean_up(Mesh input) {
   stage_("clean", [&] {
     result_.report.notes = describe(clean(input, context_));
-    for (std::string& note : describe(orient_faces(input, context_))) {
-      result_.report.notes.push_back(std::move(note));
-    }
     frame_ = unit_frame(input);
     target_ = Target(options_, result_.report.input_vertices, frame_.scale);
     enter(frame_, input);
     const bool is_ready = is_cloud_ || input.faces.uniform_degree() == 3;
     surface_ = is_ready ? std::move(input) : triangulate(input);
+    for (std::string& note : describe(orient_faces(surface_, context_))) {
+      result_.report.notes.push_back(std::move(note));
+    }
     drop_pieces();
   });
 }
