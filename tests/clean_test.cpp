@@ -79,9 +79,10 @@ TEST(Clean, RemovesDegenerateFaces) {
   mesh.faces.push_back({1, 2});
   mesh.faces.push_back({0, 1, 2, 1});
   mesh.faces.push_back({3, 3, 3});
+  mesh.faces.push_back({0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3});
   mesh.faces.push_back({0, 1, 2});
   const CleanReport report = clean(mesh);
-  EXPECT_EQ(report.degenerate_faces, 4u);
+  EXPECT_EQ(report.degenerate_faces, 5u);
   EXPECT_EQ(report.unused_vertices, 2u);
   EXPECT_EQ(mesh.faces.size(), 1u);
   EXPECT_EQ(mesh.positions.size(), 3u);

@@ -11,7 +11,8 @@ namespace meshgrain {
 struct CleanReport {
   /// Corners equal to the one before them in their face, and those between two equal ones.
   std::size_t repeated_corners = 0;
-  std::size_t degenerate_faces = 0;  ///< Fewer than three corners after that.
+  /// Fewer than three corners after that, or twice the same edge in the same direction.
+  std::size_t degenerate_faces = 0;
   std::size_t duplicate_faces =
       0;  ///< The corners of an earlier face, in the same or reverse order.
   std::size_t unused_vertices = 0;   ///< Of no face that is left.

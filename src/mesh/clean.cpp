@@ -78,6 +78,16 @@ std::vector<Index> find_duplicates(const Faces& faces, std::size_t vertices,
   return collect<Index>(vertices, duplicates_around, context);
 }
 
+/// Whether a face goes twice from one vertex to the same other one: around itself again.
+bool repeats_an_edge(std::span<const Index> face) {
+  std::vector<std::array<Index, 2>> edges;
+  for (std::size_t k = 0; k < face.size(); ++k) {
+    edges.push_back({face[k], face[(k + 1) % face.size()]});
+  }
+  std::sort(edges.begin(), edges.end());
+  return std::adjacent_find(edges.begin(), edges.end()) != edges.end();
+}
+
 /// Drops corners equal to their neighbour, and spikes: there and back again.
 void drop_repeats(std::vector<Index>& face) {
   for (std::size_t k = 0; k < face.size() && face.size() > 1;) {
@@ -115,9 +125,10 @@ void drop_repeated_corners(Mesh& mesh, CleanReport& report) {
   faces.reserve(mesh.faces.size(), mesh.faces.corners().size());
   for (f = 0; f < mesh.faces.size(); ++f) {
     face.assign(std::as_const(mesh.faces)[f].begin(), std::as_const(mesh.faces)[f].end());
-    if (!is_good(f)) drop_repeats(face);
+    const bool good = is_good(f);
+    if (!good) drop_repeats(face);
     report.repeated_corners += mesh.faces.degree(f) - face.size();
-    if (face.size() < 3) {
+    if (face.size() < 3 || (!good && repeats_an_edge(face))) {
       ++report.degenerate_faces;
     } else {
       faces.push_back(face);
