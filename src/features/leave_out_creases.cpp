@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <numeric>
-#include <span>
 #include <utility>
 
 #include "features/line_samples.h"
@@ -35,12 +35,11 @@ class Leaving {
  public:
   Leaving(const Mesh& mesh, const std::vector<EdgeOfLine>& edges, double edge_length)
       : mesh_(mesh), edge_length_(edge_length), others_(farthest * edge_length) {
-    for (const EdgeOfLine& edge : edges)
-      kinds_.emplace(edge_of(edge.ends[0], edge.ends[1]), edge.kind);
+    for (const EdgeOfLine& edge : edges) kinds_.emplace(key_of(edge), edge.kind);
     lines_ = chain_edges(mesh, edges, {}, edge_length);
   }
 
-  std::vector<EdgeOfLine> run() {
+  void run() {
     for (const Index line : by_rank()) {
       const std::vector<std::uint8_t> out = beside_others(line);
       for (std::size_t k = 0; k < out.size(); ++k) {
@@ -53,13 +52,14 @@ class Leaving {
       }
     }
     if (any_) prune();
-    std::vector<EdgeOfLine> left;
-    for (const auto& [ends, kind] : kinds_) left.push_back({ends, kind});
-    return left;
   }
+
+  bool stays(const EdgeOfLine& edge) const { return kinds_.contains(key_of(edge)); }
 
  private:
   using Edge = std::array<Index, 2>;
+
+  static Edge key_of(const EdgeOfLine& edge) { return edge_of(edge.ends[0], edge.ends[1]); }
 
   std::size_t edges_of(Index line) const { return lines_.end(line) - lines_.begin(line) - 1; }
   Edge edge(Index line, std::size_t k) const {
@@ -68,13 +68,17 @@ class Leaving {
   }
   Point point(Index v) const { return mesh_.positions[v].cast<double>(); }
   double length(const Edge& edge) const { return (point(edge[1]) - point(edge[0])).norm(); }
+  double length_of(Index line) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < edges_of(line); ++k) sum += length(edge(line, k));
+    return sum;
+  }
 
   /// The lines in the order in which they may stay: those that must first, then longer ones.
   std::vector<Index> by_rank() const {
-    std::vector<double> rank(lines_.size(), 0);
+    std::vector<double> rank(lines_.size());
     for (Index line = 0; line < lines_.size(); ++line) {
-      if (!may_go(line)) rank[line] = std::numeric_limits<double>::infinity();
-      for (std::size_t k = 0; k < edges_of(line); ++k) rank[line] += length(edge(line, k));
+      rank[line] = may_go(line) ? length_of(line) : std::numeric_limits<double>::infinity();
     }
     std::vector<Index> order(lines_.size());
     std::iota(order.begin(), order.end(), Index{0});
@@ -148,11 +152,9 @@ class Leaving {
     }
     for (Index line = 0; line < lines_.size(); ++line) {
       if (!may_go(line)) continue;
-      double whole = 0;
-      for (std::size_t k = 0; k < edges_of(line); ++k) whole += length(edge(line, k));
       const bool leads_nowhere = ends_at[lines_.vertices[lines_.begin(line)]] == 1 ||
                                  ends_at[lines_.vertices[lines_.end(line) - 1]] == 1;
-      if (!leads_nowhere || whole >= twig * edge_length_) continue;
+      if (!leads_nowhere || length_of(line) >= twig * edge_length_) continue;
       for (std::size_t k = 0; k < edges_of(line); ++k) kinds_.erase(edge(line, k));
     }
   }
@@ -173,7 +175,12 @@ std::vector<EdgeOfLine> leave_out_creases_beside_lines(const Mesh& mesh,
   const bool has_creases = std::ranges::any_of(
       edges, [](const EdgeOfLine& edge) { return edge.kind == LineKind::crease; });
   if (!has_creases || !(edge_length > 0)) return edges;
-  return Leaving(mesh, edges, edge_length).run();
+  Leaving leaving(mesh, edges, edge_length);
+  leaving.run();
+  std::vector<EdgeOfLine> left;
+  std::ranges::copy_if(edges, std::back_inserter(left),
+                       [&](const EdgeOfLine& edge) { return leaving.stays(edge); });
+  return left;
 }
 
 }  // namespace meshgrain
