@@ -56,6 +56,22 @@ TEST(Clean, RemovesSpikesOfFaces) {
   }
 }
 
+/// One large spike within the face, and many small ones: a file may hold them.
+TEST(Clean, ManySpikesTakeLittleTime) {
+  constexpr Index count = 400000;
+  Mesh mesh;
+  mesh.positions.resize(count, Vec3::Zero());
+  std::vector<Index> there_and_back, star;
+  for (Index v = 0; v < count; ++v) {
+    there_and_back.push_back(v);
+    star.insert(star.end(), {0, v});
+  }
+  for (Index v = count - 1; v-- > 1;) there_and_back.push_back(v);
+  mesh.faces.push_back(there_and_back);
+  mesh.faces.push_back(star);
+  EXPECT_EQ(clean(mesh).degenerate_faces, 2u);
+}
+
 /// A square with a square hole, and an edge that joins the two.
 TEST(Clean, PolygonsWithHolesStayWhole) {
   Mesh mesh;

@@ -13,20 +13,23 @@
 namespace meshgrain {
 namespace {
 
-/// The edges sharper than some angle, and those that are not flat beside them.
+/// The edges sharper than some angle, and those beside them that are not flat.
 class Lines {
  public:
   Lines(const Mesh& mesh, const RimAndSharpEdges& edges, double degrees)
       : mesh_(mesh), on_rim_(mesh.positions.size(), 0) {
     for (const auto& [a, b] : edges.rim) on_rim_[a] = on_rim_[b] = 1;
+    const double flattest = std::cos(degrees * std::numbers::pi / 180);
     std::vector<std::uint8_t> on_line(mesh.positions.size(), 0);
-    for (const SharpEdge& edge : edges.sharp) {
-      const double angle = std::acos(std::max(-1.0, edge.cosine)) * 180 / std::numbers::pi;
-      edges_.push_back({edge.ends, angle, angle > degrees});
-      if (angle > degrees) on_line[edge.ends[0]] = on_line[edge.ends[1]] = 1;
+    for (const auto& [ends, cosine] : edges.sharp) {
+      if (cosine < flattest) on_line[ends[0]] = on_line[ends[1]] = 1;
     }
-    for (Index e = 0; e < edges_.size(); ++e) {
-      for (const Index v : edges_[e].ends) {
+    for (const auto& [ends, cosine] : edges.sharp) {
+      if (!on_line[ends[0]] && !on_line[ends[1]]) continue;
+      const auto e = static_cast<Index>(edges_.size());
+      const double angle = std::acos(std::max(-1.0, cosine)) * 180 / std::numbers::pi;
+      edges_.push_back({ends, angle, cosine < flattest});
+      for (const Index v : ends) {
         if (on_line[v]) at_.push_back({v, e});
       }
     }

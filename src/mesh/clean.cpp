@@ -90,19 +90,24 @@ bool repeats_an_edge(std::span<const Index> face) {
 
 /// Drops corners equal to their neighbour, and spikes: there and back again.
 void drop_repeats(std::vector<Index>& face) {
-  for (std::size_t k = 0; k < face.size() && face.size() > 1;) {
-    const std::size_t n = face.size(), next = (k + 1) % n, after = (k + 2) % n;
-    const bool is_spike = face[k] == face[after];
-    if (face[k] != face[next] && !is_spike) {
-      ++k;
-      continue;
-    }
-    // The higher place first, as the other one stays where it is then.
-    const auto [low, high] = std::minmax(next, is_spike ? after : k);
-    face.erase(face.begin() + static_cast<std::ptrdiff_t>(high));
-    if (is_spike) face.erase(face.begin() + static_cast<std::ptrdiff_t>(low));
-    k = 0;
+  std::vector<Index> kept;
+  for (const Index v : face) {
+    if (kept.size() > 1 && kept[kept.size() - 2] == v) kept.pop_back();
+    if (kept.empty() || kept.back() != v) kept.push_back(v);
   }
+  // What is left lies where the end of the face meets its beginning.
+  std::size_t first = 0, end = kept.size();
+  while (end - first > 1) {
+    if (kept[end - 1] == kept[first] || (end - first > 2 && kept[end - 2] == kept[first])) {
+      --end;
+    } else if (end - first > 2 && kept[first + 1] == kept[end - 1]) {
+      ++first;
+    } else {
+      break;
+    }
+  }
+  face.assign(kept.begin() + static_cast<std::ptrdiff_t>(first),
+              kept.begin() + static_cast<std::ptrdiff_t>(end));
 }
 
 /// Drops repeated corners, and faces without three different ones. A face that comes to a vertex

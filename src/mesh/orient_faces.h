@@ -15,7 +15,8 @@ struct OrientReport {
 
 /// Turns faces to the side of their neighbours, in pieces that hang together by edges between two
 /// faces. Pieces that agree already stay as they are. Others get the side of most of their area; or
-/// where that is not clear, as after a shuffle of all faces, the outer one.
+/// where that is not clear, as after a shuffle of all faces, the outer one. No face may come to a
+/// vertex twice.
 OrientReport orient_faces(Mesh& mesh, const Context& context = Context(1));
 
 }  // namespace meshgrain
