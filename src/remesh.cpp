@@ -51,6 +51,7 @@ void prepare(Pipeline& pipeline, Mesh input) {
   pipeline.refine();
   pipeline.build_graph();
   pipeline.find_lines();
+  pipeline.refine_for_details();
   pipeline.build_levels();
   pipeline.size_faces();
   pipeline.refine_for_sizes();
@@ -100,7 +101,7 @@ std::vector<RemeshResult> remesh_levels(Mesh input, std::span<const std::size_t>
     if (k != order.front()) {
       RemeshOptions level = options;
       level.face_count = face_counts[k];
-      pipeline.aim_at(level);
+      pipeline.change_target(level);
     }
     make_mesh(pipeline);
     levels[k] = pipeline.take_mesh(prepared);

@@ -28,6 +28,9 @@ struct ExtractOptions {
   /// The same where the target edge length varies: rows must end there, each at a pair of irregular
   /// vertices.
   double cancelling_cost_where_graded = 3;
+  /// Over a mesh, for a 4-PoSy: quads alone. Triangles and pentagons go in pairs, with a row of
+  /// quads more between the two.
+  bool only_quads = false;
   /// Edges of the graph that lie on the border of the surface: where the output is open. Without
   /// any, gaps that the walk leaves are closed.
   std::vector<std::array<Index, 2>> border;

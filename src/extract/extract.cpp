@@ -13,6 +13,7 @@
 #include "extract/lattice_mesh.h"
 #include "extract/lattice_repair.h"
 #include "extract/mesh_clusters.h"
+#include "extract/pair_odd_faces.h"
 #include "extract/polygon_map.h"
 #include "mesh/vertex_faces.h"
 #include "util/union_find.h"
@@ -173,6 +174,10 @@ Extraction extract_from_mesh(const Graph& graph, const OrientationField& orienta
   if (position.posy == 4) repair.remove_diagonals(lattice.jumps);
   repair.part_straight_angles();
   make_regular(repair, position.posy);
+  if (options.only_quads) {
+    pair_odd_faces(lattice.map, repair);
+    make_regular(repair, position.posy);
+  }
   std::vector<Index> vertex;
   Extraction result = collect_faces(lattice.map, repair, lattice.clusters, vertex);
   if (!options.manifold) join_pieces(result, collapsed.meetings, vertex, context);

@@ -70,6 +70,28 @@ class FaceRepair {
   /// that leaves fewer irregular vertices.
   void open_vertices();
 
+  // Quads alone (even_faces.cpp): what pair_odd_faces() does to the faces on its ways.
+
+  /// Whether the faces beside an edge may become one.
+  bool may_remove(Index h) const;
+  /// Whether the origin of h would be left with a face that has a straight angle there, between two
+  /// edges of feature lines, if the edge of h went.
+  bool is_last_rung(Index h) const;
+
+  /// Whether two triangles may become a quad: at a vertex of a line, even with no other edge
+  /// between them if the line bends enough for a corner.
+  bool may_join_triangles(Index h) const;
+
+  /// Puts a vertex in the middle of an edge: h then ends there.
+  void split_edge(Index h);
+
+  /// Whether an edge of a line may vanish together with the triangle on the left of h.
+  bool may_contract_line(Index h) const;
+  void contract_line(Index h);
+
+  /// Cuts a face with an even number of corners into quads.
+  void cut_into_quads(Index h);
+
   // Triangles (triangle_repair.cpp).
 
   /// Turns the edge between two triangles as long as that leaves fewer irregular vertices.
@@ -100,23 +122,20 @@ class FaceRepair {
   };
   EdgeChange best_change(Index h) const;
   void apply(const EdgeChange& change);
+  /// An inner vertex of a quad mesh is regular with four edges, one of the border with three.
+  static int regular_valence(bool on_border) { return on_border ? 3 : 4; }
   /// Whether a vertex is irregular for quads once it has `change` more edges.
   bool is_irregular(Index vertex, int change) const;
   /// The halfedges around the two faces of an edge, without it.
   std::vector<Index> union_halfedges(Index h) const;
   /// Whether what the two become without the edge would have a corner twice.
   bool touches_itself(Index h) const;
-  /// Whether the origin of h would be left with a face that has a straight angle there, between two
-  /// edges of feature lines, if the edge of h went.
-  bool is_last_rung(Index h) const;
   /// Whether a face between two edges of feature lines, that leave the origin of `to` and come from
   /// `from`, has a straight angle there. `normal` is that of the face.
   bool is_straight(Index to, Index from, const Vec3& normal) const;
   Vec3 face_normal(Index h) const;
   /// Whether a face of that normal looks away from the surface at one of its vertices.
   bool is_turned_over(Index vertex, const Vec3& normal) const;
-  /// Whether the faces beside an edge may become one.
-  bool may_remove(Index h) const;
   bool make_room(Index h);
   bool join_across_hole(Index h);
   bool join_beyond(Index h);
@@ -148,6 +167,9 @@ class FaceRepair {
   template <typename Gain, typename Other, typename Apply>
   std::size_t reduce(std::size_t count, const Gain& gain, const Other& other, const Apply& apply);
   int flip_gain(Index h) const;
+  double chord_cost(std::span<const Index> orbit, std::size_t from) const;
+  bool is_bent(Index h) const;
+  bool is_corner_without(Index h) const;
   bool split_once(Index h);
   void contract(Index h);
   Index add_edge(Index a, Index b);

@@ -8,11 +8,6 @@
 namespace meshgrain {
 namespace {
 
-/// An inner vertex of a quad mesh is regular with four edges, one of the border with three.
-int regular_valence(bool on_border) {
-  return on_border ? 3 : 4;
-}
-
 bool has_repeats(std::vector<Index> values) {
   std::sort(values.begin(), values.end());
   return std::adjacent_find(values.begin(), values.end()) != values.end();
@@ -28,6 +23,7 @@ void FaceRepair::remove_doublets() {
       if (h == no_index || map_.valence(v) != 2 || clusters_.hold[v] != free_vertex) continue;
       const Index g = map_.around(h);
       if (hole_[h] || hole_[g]) continue;
+      if (is_last_rung(PolygonMap::twin(h)) || is_last_rung(PolygonMap::twin(g))) continue;
       // The faces must share nothing but the two edges, or what they become would touch itself.
       std::vector<Index> merged;
       for (Index k = map_.next(h); k != map_.prev(h); k = map_.next(k))

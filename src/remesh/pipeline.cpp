@@ -8,6 +8,7 @@
 #include "border/lock_borders.h"
 #include "extract/reduce_faces.h"
 #include "extract/remove_strips.h"
+#include "features/lines_abreast.h"
 #include "field/transfer.h"
 #include "mesh/border.h"
 #include "mesh/refine_slivers.h"
@@ -49,7 +50,8 @@ Pipeline::Pipeline(const Mesh& input, const RemeshOptions& options, const Contex
       context_(context),
       stage_(context, result_.report.stages),
       is_cloud_(input.is_point_cloud()),
-      nodes_are_vertices_(is_cloud_ || options.graph.nodes == GraphNodes::vertices) {
+      nodes_are_vertices_(is_cloud_ || options.graph.nodes == GraphNodes::vertices),
+      lattice_faces_(options.faces) {
   result_.report.input_vertices = input.positions.size();
   result_.report.input_faces = input.faces.size();
   if (options.lock_borders && is_cloud_) {
@@ -61,7 +63,7 @@ void Pipeline::clean_up(Mesh input) {
   stage_("clean", [&] {
     result_.report.notes = describe(clean(input, context_));
     frame_ = unit_frame(input);
-    target_ = Target(options_, result_.report.input_vertices, frame_.scale);
+    aim_at(options_, options_.faces);
     enter(frame_, input);
     const bool is_ready = is_cloud_ || input.faces.uniform_degree() == 3;
     surface_ = is_ready ? std::move(input) : triangulate(input);
@@ -86,17 +88,21 @@ void Pipeline::refine() {
     const double area = stage_("subdivide", [&] {
       const double whole = surface_area(surface_, context_);
       if (!(whole > 0)) throw Error("the input has no surface: all of its faces are degenerate");
-      const EdgeLengths edges = edge_lengths(surface_, context_);
-      const double limit = target_.longest_input_edge(options_, whole, edges.mean);
-      if (edges.max > limit) {
-        refine_slivers(surface_, limit, context_);
-        subdivide(surface_, limit, context_);
-      }
+      split_long_edges(whole);
       return whole;
     });
     lay_guides(target_.edge_length(area));
   }
   stage_("order", [&] { put_in_order(); });
+}
+
+bool Pipeline::split_long_edges(double area) {
+  const EdgeLengths edges = edge_lengths(surface_, context_);
+  const double limit = target_.longest_input_edge(options_, area, edges.mean);
+  if (!(edges.max > limit)) return false;
+  refine_slivers(surface_, limit, context_);
+  subdivide(surface_, limit, context_);
+  return true;
 }
 
 std::vector<Index> Pipeline::put_in_order() {
@@ -153,6 +159,29 @@ void Pipeline::find_lines() {
   });
 }
 
+bool Pipeline::choose_lattice(const RemeshOptions& options) {
+  const bool free = options_.guides.empty() && options_.fields == nullptr && borders_.empty();
+  if (options.faces != OutputFaces::quads || is_cloud_ || !nodes_are_vertices_ || !free) {
+    return false;
+  }
+  // A cell of the coarse lattice is two faces wide. Which shares was measured.
+  const double side = target_.face_side(area_);
+  const bool many =
+      share_abreast(features_, 1.5 * side) > 0.25 || share_abreast(features_, 2 * side) > 0.6;
+  if (!many) return false;
+  aim_at(options, OutputFaces::quad_dominant);
+  mean_length_ = target_.edge_length(area_);
+  return true;
+}
+
+void Pipeline::refine_for_details() {
+  if (!choose_lattice(options_)) return;
+  if (!stage_("subdivide", [&] { return split_long_edges(area_); })) return;
+  stage_("order", [&] { put_in_order(); });
+  build_graph();
+  find_lines();
+}
+
 void Pipeline::size_faces() {
   Sizing sizing = options_.sizing;
   sizing.point = frame_.inside(sizing.point);
@@ -186,8 +215,8 @@ double Pipeline::count_to_aim_at() const {
 double Pipeline::faces_to_ask_for() const {
   if (options_.edge_length > 0) return 1;
   // A lattice spans what bends within a few cells, as its faces will. How many was measured.
-  const double cells = options_.faces == OutputFaces::quads           ? 2
-                       : options_.faces == OutputFaces::quad_dominant ? 3
+  const double cells = lattice_faces_ == OutputFaces::quads           ? 2
+                       : lattice_faces_ == OutputFaces::quad_dominant ? 3
                                                                       : 4;
   return count_to_aim_at() /
          flattened_share(hierarchy_, cells * mean_length_ * mean_length_, context_);
@@ -321,7 +350,7 @@ bool Pipeline::take_faces_away(Extraction& extraction) {
 bool Pipeline::take_strips(Extraction& extraction) {
   if (options_.faces != OutputFaces::quads) return false;
   Extraction quads = extraction;
-  split(quads);
+  if (lattice_faces_ == OutputFaces::quads) split(quads);
   const auto count = static_cast<double>(quads.mesh.faces.size());
   const double wanted = count / target_.count_ratio(extraction.mesh);
   constexpr double one_percent = 0.0099;  // strips are long: all that may be
@@ -353,7 +382,7 @@ void Pipeline::count_singularities() {
 
 void Pipeline::smooth_faces() {
   stage_("smoothing", [&] {
-    if (options_.faces == OutputFaces::quads && !is_split_) split(extraction_);
+    if (lattice_faces_ == OutputFaces::quads && !is_split_) split(extraction_);
     finish_borders();
     SmoothOptions smoothing;
     smoothing.iterations = options_.smoothing;
@@ -381,9 +410,17 @@ void Pipeline::smooth_faces() {
   });
 }
 
-void Pipeline::aim_at(const RemeshOptions& options) {
-  target_ = Target(options, result_.report.input_vertices, frame_.scale);
+void Pipeline::aim_at(const RemeshOptions& options, OutputFaces lattice_faces) {
+  lattice_faces_ = lattice_faces;
+  RemeshOptions of_lattice = options;
+  of_lattice.faces = lattice_faces;
+  target_ = Target(of_lattice, result_.report.input_vertices, frame_.scale);
+}
+
+void Pipeline::change_target(const RemeshOptions& options) {
+  aim_at(options, options.faces);
   find_lines();
+  choose_lattice(options);
   size_faces();
 }
 
@@ -488,8 +525,8 @@ PositionField Pipeline::solve_positions() {
 
 double Pipeline::cancelling_cost(double regularity) const {
   if (regularity >= 1) return std::numeric_limits<double>::infinity();
-  const double middle = options_.faces == OutputFaces::quads           ? 9.3
-                        : options_.faces == OutputFaces::quad_dominant ? 15.6
+  const double middle = lattice_faces_ == OutputFaces::quads           ? 9.3
+                        : lattice_faces_ == OutputFaces::quad_dominant ? 15.6
                                                                        : 14.0;
   constexpr double least = 0.28;  // of that
   return middle * (least + (1 - least) * regularity / (1 - regularity));
@@ -508,6 +545,7 @@ Extraction Pipeline::extract(const PositionField& positions) {
   } else if (nodes_are_vertices_) {
     extract.surface = &surface_;
     extract.features = &features_;
+    extract.only_quads = options_.faces == OutputFaces::quads && lattice_faces_ != options_.faces;
     extract.manifold = options_.manifold || !borders_.empty();  // see finish_borders()
   } else {
     extract.border = border_of_faces(surface_, graph());

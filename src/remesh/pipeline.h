@@ -30,6 +30,11 @@ class Pipeline {
   void refine();
   void build_graph();
   void find_lines();
+
+  /// Pure quads whose lattice is twice as coarse as they are cannot follow lines that run along
+  /// each other a face or two apart. Where there are many of these, the lattice is as fine as the
+  /// quads.
+  void refine_for_details();
   void build_levels();
   void size_faces();
 
@@ -45,7 +50,7 @@ class Pipeline {
   void smooth_faces();
 
   /// Another target, not finer than the one that all was prepared for.
-  void aim_at(const RemeshOptions& options);
+  void change_target(const RemeshOptions& options);
 
   /// The mesh alone; the rest stays for the next one.
   RemeshResult take_mesh(const RemeshReport& prepared);
@@ -59,6 +64,12 @@ class Pipeline {
   /// the larger quads: what is left is split then, else as it was.
   bool take_strips(Extraction& extraction);
   void drop_pieces();
+
+  void aim_at(const RemeshOptions& options, OutputFaces lattice_faces);
+  /// Returns whether the lattice is finer now.
+  bool choose_lattice(const RemeshOptions& options);
+  /// Those longer than the target allows. Returns whether there are any.
+  bool split_long_edges(double area);
 
   /// Guides onto the surface: those that edges must follow are cut into it.
   void lay_guides(double edge_length);
@@ -98,6 +109,9 @@ class Pipeline {
   Frame frame_;
   Target target_;
   bool is_cloud_, nodes_are_vertices_;
+  // What the cells of the lattice become: OutputFaces::quads are four each. Where they are to be
+  // quads themselves, it is quad_dominant, and few of the others are left for extraction to mend.
+  OutputFaces lattice_faces_;
   bool is_sharpened_ = false;
   Mesh surface_;
   Hierarchy hierarchy_;
