@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "extract/collect_faces.h"
 #include "extract/drop_unused.h"
 #include "extract/extraction_map.h"
 #include "extract/face_repair.h"
 #include "extract/piece.h"
+#include "extract/remove_strips.h"
 #include "made_fields.h"
 #include "made_points.h"
 #include "mesh/border.h"
@@ -16,6 +19,7 @@
 #include "meshgrain/shapes.h"
 #include "meshgrain/statistics.h"
 #include "meshgrain/surface.h"
+#include "same_topology.h"
 
 namespace meshgrain {
 namespace {
@@ -357,6 +361,29 @@ TEST(FaceRepair, QuadsCloseWithoutAChangeOfTopologyOrBorder) {
       ++closed;
     }
   }
+}
+
+/// However many strips go that end at it.
+TEST(RemoveStrips, AHoleOfAFewEdgesStaysOpen) {
+  constexpr Index n = 5;
+  Extraction extraction;
+  for (Index y = 0; y <= n; ++y) {
+    for (Index x = 0; x <= n; ++x) {
+      extraction.mesh.positions.push_back({static_cast<float>(x), static_cast<float>(y), 0});
+    }
+  }
+  const auto at = [](Index x, Index y) { return y * (n + 1) + x; };
+  for (Index y = 0; y < n; ++y) {
+    for (Index x = 0; x < n; ++x) {
+      if (x == n / 2 && y == n / 2) continue;
+      extraction.mesh.faces.push_back({at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)});
+    }
+  }
+  extraction.nodes.resize(extraction.mesh.positions.size());
+  std::iota(extraction.nodes.begin(), extraction.nodes.end(), Index{0});
+  const MeshStatistics before = mesh_statistics(extraction.mesh);
+  EXPECT_GT(remove_strips(extraction, 100, 100, Context()), 0u);
+  made::expect_same_topology(mesh_statistics(extraction.mesh), before);
 }
 
 /// A trapezohedron: two poles with eight quads each, and between them only vertices with three.

@@ -147,8 +147,8 @@ class Strips {
     return keeps_faces_apart(strip);
   }
 
-  /// Whether what is left of the faces around stays faces of four corners, and no edge gets a
-  /// third.
+  /// Whether what is left of the faces around stays faces of four corners, no edge gets a third,
+  /// and the border stays what it is.
   bool keeps_faces_apart(const Strip& strip) const {
     std::map<Index, Index> becomes;
     for (const Edge& rung : strip.rungs) {
@@ -171,7 +171,15 @@ class Strips {
         if (++uses[edge_of(corners[k], corners[(k + 1) % 4])] > 2) return false;
       }
     }
-    return !uses.empty();
+    // The border stays the border: a hole of a few edges must not close.
+    const bool stays_open = std::ranges::all_of(sides_, [&](const auto& edge_and_sides) {
+      const auto& [edge, sides] = edge_and_sides;
+      const Index a = after(edge[0]), b = after(edge[1]);
+      if (sides[1] != no_index || a == b) return true;
+      const auto it = uses.find(edge_of(a, b));
+      return it != uses.end() && it->second == 1;
+    });
+    return stays_open && !uses.empty();
   }
 
   const Mesh& mesh_;
