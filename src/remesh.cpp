@@ -60,8 +60,9 @@ void prepare(Pipeline& pipeline, Mesh input) {
 
 void make_mesh(Pipeline& pipeline) {
   pipeline.position_and_extract();
-  pipeline.count_singularities();
   pipeline.smooth_faces();
+  pipeline.try_coarser_lattice();
+  pipeline.count_singularities();
 }
 
 }  // namespace

@@ -98,9 +98,12 @@ TEST(LinesAbreast, AreTheRimsOfAThinPlate) {
   Mesh plate = sample_shape("cube");
   for (Vec3& p : plate.positions) p.z() *= 0.1f;
   const FeatureLines lines = find_features(plate, {}, 0.05);
-  EXPECT_NEAR(share_abreast(lines, 0.12), 8 / 8.4, 0.03);
-  EXPECT_EQ(share_abreast(lines, 0.08), 0);
-  EXPECT_EQ(share_abreast({}, 0.1), 0);
+  std::vector<std::uint8_t> on_border(plate.positions.size(), 0);
+  EXPECT_NEAR(share_abreast(lines, on_border, 0.12), 8 / 8.4, 0.03);
+  EXPECT_EQ(share_abreast(lines, on_border, 0.08), 0);
+  EXPECT_EQ(share_abreast({}, on_border, 0.12), 0);
+  on_border.assign(on_border.size(), 1);
+  EXPECT_EQ(share_abreast(lines, on_border, 0.12), 0);
 }
 
 /// The steps of the shaft are hardly wider than a face.

@@ -16,6 +16,7 @@
 #include "meshgrain/error.h"
 #include "meshgrain/finish.h"
 #include "meshgrain/singularities.h"
+#include "meshgrain/statistics.h"
 #include "meshgrain/surface.h"
 #include "meshgrain/triangulate.h"
 #include "remesh/close_bad_quads.h"
@@ -51,7 +52,7 @@ Pipeline::Pipeline(const Mesh& input, const RemeshOptions& options, const Contex
       stage_(context, result_.report.stages),
       is_cloud_(input.is_point_cloud()),
       nodes_are_vertices_(is_cloud_ || options.graph.nodes == GraphNodes::vertices),
-      lattice_faces_(options.faces) {
+      wanted_(options) {
   result_.report.input_vertices = input.positions.size();
   result_.report.input_faces = input.faces.size();
   if (options.lock_borders && is_cloud_) {
@@ -63,7 +64,7 @@ void Pipeline::clean_up(Mesh input) {
   stage_("clean", [&] {
     result_.report.notes = describe(clean(input, context_));
     frame_ = unit_frame(input);
-    aim_at(options_, options_.faces);
+    aim_at(options_.faces);
     enter(frame_, input);
     const bool is_ready = is_cloud_ || input.faces.uniform_degree() == 3;
     surface_ = is_ready ? std::move(input) : triangulate(input);
@@ -159,23 +160,29 @@ void Pipeline::find_lines() {
   });
 }
 
-bool Pipeline::choose_lattice(const RemeshOptions& options) {
+bool Pipeline::choose_lattice() {
   const bool free = options_.guides.empty() && options_.fields == nullptr && borders_.empty();
-  if (options.faces != OutputFaces::quads || is_cloud_ || !nodes_are_vertices_ || !free) {
+  if (options_.faces != OutputFaces::quads || is_cloud_ || !nodes_are_vertices_ || !free) {
     return false;
   }
+  if (features_.empty()) return false;
+  const auto border = border_edges(surface_, context_);
+  // Where more than two faces meet, all of them would have to get the same new vertices.
+  if (rim_edges(surface_, context_).size() != border.size()) return false;
+  std::vector<std::uint8_t> on_border(surface_.positions.size(), 0);
+  for (const auto& [a, b] : border) on_border[a] = on_border[b] = 1;
   // A cell of the coarse lattice is two faces wide. Which shares was measured.
   const double side = target_.face_side(area_);
-  const bool many =
-      share_abreast(features_, 1.5 * side) > 0.25 || share_abreast(features_, 2 * side) > 0.6;
-  if (!many) return false;
-  aim_at(options, OutputFaces::quad_dominant);
-  mean_length_ = target_.edge_length(area_);
+  const auto many_within = [&](double sides, double share) {
+    return share_abreast(features_, on_border, sides * side) > share;
+  };
+  if (!many_within(1.5, 0.25) && !many_within(2, 0.6)) return false;
+  aim_at(OutputFaces::quad_dominant);
   return true;
 }
 
 void Pipeline::refine_for_details() {
-  if (!choose_lattice(options_)) return;
+  if (!choose_lattice()) return;
   if (!stage_("subdivide", [&] { return split_long_edges(area_); })) return;
   stage_("order", [&] { put_in_order(); });
   build_graph();
@@ -410,17 +417,36 @@ void Pipeline::smooth_faces() {
   });
 }
 
-void Pipeline::aim_at(const RemeshOptions& options, OutputFaces lattice_faces) {
+void Pipeline::try_coarser_lattice() {
+  const auto inverted = [&] { return mesh_statistics(extraction_.mesh).inverted_quads; };
+  if (lattice_faces_ == options_.faces) return;
+  const std::size_t before = inverted();
+  if (before == 0) return;
+  Extraction finer = std::exchange(extraction_, {});
+  PositionField positions = std::exchange(fields().position, {});
+  is_split_ = false;
+  aim_at(options_.faces);
+  size_faces();
+  position_and_extract();
+  smooth_faces();
+  if (inverted() < before) return;
+  extraction_ = std::move(finer);
+  fields().position = std::move(positions);
+}
+
+void Pipeline::aim_at(OutputFaces lattice_faces) {
   lattice_faces_ = lattice_faces;
-  RemeshOptions of_lattice = options;
+  RemeshOptions of_lattice = wanted_;
   of_lattice.faces = lattice_faces;
   target_ = Target(of_lattice, result_.report.input_vertices, frame_.scale);
+  mean_length_ = target_.edge_length(area_);
 }
 
 void Pipeline::change_target(const RemeshOptions& options) {
-  aim_at(options, options.faces);
+  wanted_ = options;
+  aim_at(options.faces);
   find_lines();
-  choose_lattice(options);
+  choose_lattice();
   size_faces();
 }
 

@@ -46,8 +46,12 @@ class Pipeline {
   /// longer or shorter. A few faces too many can be taken away one by one: that costs some
   /// regularity, so that more of it is allowed only when other lengths have not helped.
   void position_and_extract();
-  void count_singularities();
   void smooth_faces();
+
+  /// Where refine_for_details() leaves inverted quads, what there would be without it: that is kept
+  /// if it has fewer.
+  void try_coarser_lattice();
+  void count_singularities();
 
   /// Another target, not finer than the one that all was prepared for.
   void change_target(const RemeshOptions& options);
@@ -65,9 +69,9 @@ class Pipeline {
   bool take_strips(Extraction& extraction);
   void drop_pieces();
 
-  void aim_at(const RemeshOptions& options, OutputFaces lattice_faces);
+  void aim_at(OutputFaces lattice_faces);
   /// Returns whether the lattice is finer now.
-  bool choose_lattice(const RemeshOptions& options);
+  bool choose_lattice();
   /// Those longer than the target allows. Returns whether there are any.
   bool split_long_edges(double area);
 
@@ -111,7 +115,8 @@ class Pipeline {
   bool is_cloud_, nodes_are_vertices_;
   // What the cells of the lattice become: OutputFaces::quads are four each. Where they are to be
   // quads themselves, it is quad_dominant, and few of the others are left for extraction to mend.
-  OutputFaces lattice_faces_;
+  OutputFaces lattice_faces_ = OutputFaces::quads;
+  RemeshOptions wanted_;  // what the target goes by
   bool is_sharpened_ = false;
   Mesh surface_;
   Hierarchy hierarchy_;
