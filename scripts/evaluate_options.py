@@ -6,7 +6,7 @@ from pathlib import Path
 
 from evaluate_run import cell, run, stats
 
-PARTS = ("bracket", "cube", "cylinder", "shaft", "twisted-cube")
+PARTS = ("bracket", "cube", "cylinder", "fused-boxes", "shaft", "twisted-cube")
 COUNTS = (500, 5000, 50000)
 
 

@@ -26,7 +26,7 @@ double output_edge(const Mesh& mesh, double faces) {
 }
 
 TEST(Denoise, PartsGetTheirCreasesBack) {
-  for (const char* name : {"cube", "cylinder", "bracket", "shaft", "twisted-cube"}) {
+  for (const char* name : {"cube", "cylinder", "bracket", "shaft", "twisted-cube", "fused-boxes"}) {
     SCOPED_TRACE(name);
     const Mesh part = sample_shape(name, 3);
     RemeshOptions options;

@@ -119,7 +119,7 @@ TEST(Features, OfCreasesBesideEachOtherTheFirstStays) {
 }
 
 TEST(Features, CreasesAndCornersAreKept) {
-  for (const char* name : {"cube", "cylinder", "bracket", "twisted-cube", "shaft"}) {
+  for (const char* name : {"cube", "cylinder", "bracket", "twisted-cube", "fused-boxes", "shaft"}) {
     const Mesh input = sample_shape(name);
     for (const std::size_t count : {1000, 1500, 5000}) {
       for (const OutputFaces faces :

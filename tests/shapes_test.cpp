@@ -95,6 +95,7 @@ TEST_P(SampleShape, ScalesWithTheResolution) {
 INSTANTIATE_TEST_SUITE_P(All, SampleShape,
                          testing::Values(Expected{"bracket", 0, 0}, Expected{"cube", 2, 1},
                                          Expected{"twisted-cube", 2, 1},
+                                         Expected{"fused-boxes", 2, 1.8},
                                          Expected{"cylinder", 2, M_PI / 4}, Expected{"shaft", 2, 0},
                                          Expected{"sphere", 2, 4 * M_PI / 3},
                                          Expected{"torus", 0, 2 * M_PI* M_PI * 0.16},
@@ -107,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(All, SampleShape,
                          });
 
 TEST(SampleShapes, KnowsItsNames) {
-  EXPECT_EQ(sample_names().size(), 10u);
+  EXPECT_EQ(sample_names().size(), 11u);
   for (const std::string& name : sample_names())
     EXPECT_FALSE(sample_shape(name, 0.3).faces.empty());
   try {

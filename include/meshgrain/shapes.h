@@ -19,6 +19,7 @@ std::vector<std::string> sample_names();
 ///     bracket       L-shaped bracket with a fillet, a rounded end and a round hole [0]
 ///     cube          unit cube [2]
 ///     twisted-cube  unit cube twisted by a quarter turn about its upright axis [2]
+///     fused-boxes   a box on another one, tilted by 30 degrees [2]
 ///     cylinder      as wide as it is high, with flat caps [2]
 ///     shaft         turned part of cylinders of different radii [2]
 ///     sphere        unit geodesic sphere [2]

@@ -12,6 +12,7 @@ namespace meshgrain::shapes {
 Mesh plate(double resolution);  // boxes.cpp
 Mesh cube(double resolution);
 Mesh twisted_cube(double resolution);
+Mesh fused_boxes(double resolution);
 
 Mesh sphere(double resolution);  // round.cpp
 Mesh torus(double resolution);

@@ -18,6 +18,7 @@ constexpr Shape all_shapes[] = {
     {"bracket", shapes::bracket},
     {"cube", shapes::cube},
     {"twisted-cube", shapes::twisted_cube},
+    {"fused-boxes", shapes::fused_boxes},
     {"cylinder", shapes::cylinder},
     {"shaft", shapes::shaft},
     {"sphere", shapes::sphere},
