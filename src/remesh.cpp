@@ -62,7 +62,7 @@ void make_mesh(Pipeline& pipeline) {
   pipeline.position_and_extract();
   pipeline.smooth_faces();
   pipeline.try_coarser_lattice();
-  pipeline.count_singularities();
+  pipeline.report_fields();
 }
 
 }  // namespace

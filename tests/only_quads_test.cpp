@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <map>
 #include <numeric>
 #include <string>
 #include <utility>

@@ -9,15 +9,17 @@
 
 namespace meshgrain {
 
+/// The direction of an edge.
+Vec3 FaceRepair::along(Index h) const {
+  return (clusters_.positions[map_.target(h)] - clusters_.positions[map_.origin(h)]).normalized();
+}
+
 /// Whether a line turns towards an edge that starts there as a circle of twelve edges does.
 bool FaceRepair::is_corner_without(Index h) const {
   constexpr float least = 0.45f;  // sine of the turn
-  const Index to = map_.next(PolygonMap::twin(h)), from = map_.prev(h);
-  const Vec3& p = clusters_.positions[map_.origin(h)];
-  const Vec3 before = (p - clusters_.positions[map_.origin(from)]).normalized();
-  const Vec3 after = (clusters_.positions[map_.target(to)] - p).normalized();
-  const Vec3 normal = (face_normal(h) + face_normal(PolygonMap::twin(h))).normalized();
-  return normal.dot(before.cross(after)) > least;
+  const Index t = PolygonMap::twin(h);
+  const Vec3 normal = (face_normal(h) + face_normal(t)).normalized();
+  return normal.dot(along(map_.prev(h)).cross(along(map_.next(t)))) > least;
 }
 
 bool FaceRepair::may_join_triangles(Index h) const {
@@ -45,13 +47,9 @@ void FaceRepair::split_edge(Index h) {
 /// of twelve edges does.
 bool FaceRepair::is_bent(Index h) const {
   constexpr float most = 0.5f;  // cosine of two turns
-  const auto along = [&](Index g) {
-    const Vec3 d = clusters_.positions[map_.target(g)] - clusters_.positions[map_.origin(g)];
-    return Vec3(d.normalized());
-  };
   Vec3 before = along(h), after = before;
   map_.for_each_leaving(map_.origin(h), [&](Index g) {
-    if (g != h && line(g) == line(h)) before = -along(g);
+    if (g != h && line(g) == line(h)) before = along(PolygonMap::twin(g));
   });
   const Index back = PolygonMap::twin(h);
   map_.for_each_leaving(map_.target(h), [&](Index g) {
@@ -90,21 +88,8 @@ bool FaceRepair::may_contract_line(Index h) const {
 }
 
 void FaceRepair::contract_line(Index h) {
-  const Index ends[2] = {map_.origin(h), map_.target(h)};
-  if (clusters_.hold[ends[1]] == at_corner) h = PolygonMap::twin(h);  // the origin stays
-  const Index sides[2] = {h, PolygonMap::twin(h)};
-  Index gone[2] = {no_index, no_index}, kept[2];
-  for (const int side : {0, 1}) {
-    if (map_.degree(sides[side]) != 3) continue;
-    gone[side] = map_.next(sides[side]);
-    kept[side] = map_.prev(sides[side]);
-  }
-  map_.contract_edge(h);
-  for (const int side : {0, 1}) {
-    if (gone[side] == no_index) continue;
-    hole_[kept[side]] = hole_[PolygonMap::twin(gone[side])];
-    map_.remove_edge(gone[side]);
-  }
+  const bool origin_stays = clusters_.hold[map_.target(h)] != at_corner;
+  contract(origin_stays ? h : PolygonMap::twin(h));
 }
 
 /// How bad an edge is that cuts a quad off a face, from one of its corners to the third after it.

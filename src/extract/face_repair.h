@@ -168,6 +168,7 @@ class FaceRepair {
   std::size_t reduce(std::size_t count, const Gain& gain, const Other& other, const Apply& apply);
   int flip_gain(Index h) const;
   double chord_cost(std::span<const Index> orbit, std::size_t from) const;
+  Vec3 along(Index h) const;
   bool is_bent(Index h) const;
   bool is_corner_without(Index h) const;
   bool split_once(Index h);

@@ -1,6 +1,7 @@
 #include "extract/pair_odd_faces.h"
 
 #include <algorithm>
+#include <array>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
@@ -227,11 +228,15 @@ bool OddFaces::contract_end(Index end) {
   const Index other_side = PolygonMap::twin(end), beyond = map_.next(other_side);
   const bool is_both = map_.degree(other_side) == 3;
   // Of the other two edges of a triangle one vanishes: what stood for the face beyond may, too.
+  std::vector<std::array<Index, 2>> others;
   for (const Index side : {end, other_side}) {
-    if (map_.degree(side) != 3) continue;
-    std::ranges::replace(faces_, PolygonMap::twin(map_.next(side)), map_.prev(side));
+    if (map_.degree(side) == 3) others.push_back({map_.next(side), map_.prev(side)});
   }
   repair_.contract_line(end);
+  for (const auto& [a, b] : others) {
+    const Index gone = map_.removed(a) ? a : b, left = gone == a ? b : a;
+    std::ranges::replace(faces_, PolygonMap::twin(gone), left);
+  }
   if (!is_both && !is_odd(beyond)) repair_.cut_into_quads(beyond);
   return true;
 }

@@ -6,15 +6,14 @@
 
 namespace meshgrain {
 
-/// Contracts an edge between triangles: the target of h vanishes, and so do the triangles beside
-/// it.
+/// Contracts an edge: its target vanishes, and so do the triangles beside it.
 void FaceRepair::contract(Index h) {
   const Index t = PolygonMap::twin(h);
   const Index gone[2] = {map_.next(h), map_.prev(t)}, kept[2] = {map_.prev(h), map_.next(t)};
-  const bool inside[2] = {!hole_[h], !hole_[t]};
+  const bool vanishes[2] = {!hole_[h] && map_.degree(h) == 3, !hole_[t] && map_.degree(t) == 3};
   map_.contract_edge(h);
   for (int side = 0; side < 2; ++side) {
-    if (!inside[side]) continue;
+    if (!vanishes[side]) continue;
     hole_[kept[side]] = hole_[PolygonMap::twin(gone[side])];
     map_.remove_edge(gone[side]);
   }

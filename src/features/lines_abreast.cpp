@@ -23,7 +23,8 @@ double share_abreast(const FeatureLines& lines, std::span<const std::uint8_t> on
       const Eigen::Vector3d from = lines.positions[k].cast<double>();
       const Eigen::Vector3d along = lines.positions[k + 1].cast<double>() - from;
       const double length = along.norm();
-      const bool is_border = on_border[lines.vertices[k]] && on_border[lines.vertices[k + 1]];
+      const bool is_border =
+          !on_border.empty() && on_border[lines.vertices[k]] && on_border[lines.vertices[k + 1]];
       for (; next < length; next += step * distance) {
         ++all;
         if (is_border) continue;

@@ -114,7 +114,7 @@ Need needed_by_mesh(const Mesh& input, const RemeshOptions& options, const Targe
 }
 
 Need needed(const Mesh& input, const RemeshOptions& options, const Context& context) {
-  const Target target(options, input.positions.size(), 1);
+  const Target target(options, options.faces, input.positions.size(), 1);
   Need need = input.is_point_cloud() ? needed_by_cloud(input, options, target)
                                      : needed_by_mesh(input, options, target, context);
   need.input += program + thread * context.threads() +

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "border/lock_borders.h"
@@ -132,6 +133,10 @@ void Pipeline::build_levels() {
   result_.report.levels = hierarchy_.levels.size();
 }
 
+void Pipeline::complete_levels() {
+  if (hierarchy_.levels.size() < result_.report.levels) build_levels();
+}
+
 void Pipeline::drop_coarse_levels() {
   hierarchy_.levels.resize(1);
   hierarchy_.parents = {};
@@ -140,10 +145,9 @@ void Pipeline::drop_coarse_levels() {
 void Pipeline::find_lines() {
   area_ = 0;
   for (const float a : graph().areas) area_ += a;
-  mean_length_ = target_.edge_length(area_);
   if (is_cloud_) {
     soft_guides_.clear();
-    lay_guides(mean_length_);
+    lay_guides(mean_length());
   }
   constraints_ = guide_constraints(graph(), soft_guides_);
   if (is_cloud_ || !nodes_are_vertices_) return;
@@ -165,18 +169,19 @@ bool Pipeline::choose_lattice() {
   if (options_.faces != OutputFaces::quads || is_cloud_ || !nodes_are_vertices_ || !free) {
     return false;
   }
-  if (features_.empty()) return false;
+  // A cell of the coarse lattice is two faces wide. Which shares was measured.
+  const double side = target_.face_side(area_);
+  const auto many_abreast = [&](std::span<const std::uint8_t> on_border) {
+    return share_abreast(features_, on_border, 1.5 * side) > 0.25 ||
+           share_abreast(features_, on_border, 2 * side) > 0.6;
+  };
+  if (!many_abreast({})) return false;  // nor are there without the borders
   const auto border = border_edges(surface_, context_);
   // Where more than two faces meet, all of them would have to get the same new vertices.
   if (rim_edges(surface_, context_).size() != border.size()) return false;
   std::vector<std::uint8_t> on_border(surface_.positions.size(), 0);
   for (const auto& [a, b] : border) on_border[a] = on_border[b] = 1;
-  // A cell of the coarse lattice is two faces wide. Which shares was measured.
-  const double side = target_.face_side(area_);
-  const auto many_within = [&](double sides, double share) {
-    return share_abreast(features_, on_border, sides * side) > share;
-  };
-  if (!many_within(1.5, 0.25) && !many_within(2, 0.6)) return false;
+  if (!many_abreast(on_border)) return false;
   aim_at(OutputFaces::quad_dominant);
   return true;
 }
@@ -203,7 +208,7 @@ void Pipeline::size_faces() {
   free_lengths_ = lengths_;
   // The lattice of pure quads is twice as coarse as their edges.
   const double sides = options_.faces == OutputFaces::quads ? 2 : 1;
-  border_spacing_ = border_spacing(borders_, graph(), mean_length_, sides, context_);
+  border_spacing_ = border_spacing(borders_, graph(), mean_length(), sides, context_);
   fit_lengths_to_borders(more_faces);
 }
 
@@ -226,7 +231,7 @@ double Pipeline::faces_to_ask_for() const {
                        : lattice_faces_ == OutputFaces::quad_dominant ? 3
                                                                       : 4;
   return count_to_aim_at() /
-         flattened_share(hierarchy_, cells * mean_length_ * mean_length_, context_);
+         flattened_share(hierarchy_, cells * std::pow(mean_length(), 2), context_);
 }
 
 bool Pipeline::fit_lengths_to_borders(double more_faces) {
@@ -282,7 +287,7 @@ void Pipeline::orient() {
     static_cast<SolverOptions&>(orientation) = options_.solver;
     orientation.rosy = options_.rosy != 0 ? options_.rosy : posy_of(options_.faces);
     orientation.energy = options_.orientation_energy;
-    auto constraints = curvature_constraints(graph(), static_cast<float>(mean_length_),
+    auto constraints = curvature_constraints(graph(), static_cast<float>(mean_length()),
                                              options_.curvature, context_);
     constraints.insert(constraints.end(), constraints_.orientation.begin(),
                        constraints_.orientation.end());
@@ -294,6 +299,14 @@ void Pipeline::orient() {
 }
 
 void Pipeline::position_and_extract() {
+  find_faces();
+  if (extraction_.mesh.faces.empty()) {
+    throw Error(
+        "nothing is left of the surface at this target: ask for more faces, or shorter edges");
+  }
+}
+
+void Pipeline::find_faces() {
   constexpr int attempts = 8;
   const double tolerance = target_.tolerance();
   const bool given = options_.fields != nullptr && !options_.fields->position.points.empty();
@@ -303,7 +316,7 @@ void Pipeline::position_and_extract() {
   // were for it, all attempts together: a single one may be off by as much as a row of cells.
   double asked = 0, excess = 0;
   for (int attempt = 0; attempt < attempts; ++attempt) {
-    if (hierarchy_.levels.size() < result_.report.levels) build_levels();  // again
+    complete_levels();
     PositionField positions = stage_("position field", [&] {
       return given ? transfer_position(*options_.fields, graph(), frame_, context_)
                    : solve_positions();
@@ -339,11 +352,6 @@ void Pipeline::position_and_extract() {
   if (has_room && !is_split_ && ratio > 1 + tolerance && ratio < 1.35) {
     take_faces_away(extraction_);
   }
-  if (extraction_.mesh.faces.empty()) {
-    throw Error(
-        "nothing is left of the surface at this target: ask for more faces, or shorter edges");
-  }
-  result_.report.edge_length = fields().position.edge_length[0] * frame_.scale;
 }
 
 bool Pipeline::take_faces_away(Extraction& extraction) {
@@ -375,7 +383,8 @@ bool Pipeline::take_strips(Extraction& extraction) {
   return true;
 }
 
-void Pipeline::count_singularities() {
+void Pipeline::report_fields() {
+  result_.report.edge_length = fields().position.edge_length[0] * frame_.scale;
   if (!options_.count_singularities || is_cloud_ || !nodes_are_vertices_) return;
   stage_("singularities", [&] {
     result_.report.orientation_singularities =
@@ -424,22 +433,24 @@ void Pipeline::try_coarser_lattice() {
   if (before == 0) return;
   Extraction finer = std::exchange(extraction_, {});
   PositionField positions = std::exchange(fields().position, {});
+  auto energies = std::exchange(result_.report.position_energies, {});
   is_split_ = false;
   aim_at(options_.faces);
+  complete_levels();
   size_faces();
-  position_and_extract();
-  smooth_faces();
-  if (inverted() < before) return;
+  find_faces();
+  if (!extraction_.mesh.faces.empty()) {
+    smooth_faces();
+    if (inverted() < before) return;
+  }
   extraction_ = std::move(finer);
   fields().position = std::move(positions);
+  result_.report.position_energies = std::move(energies);
 }
 
 void Pipeline::aim_at(OutputFaces lattice_faces) {
   lattice_faces_ = lattice_faces;
-  RemeshOptions of_lattice = wanted_;
-  of_lattice.faces = lattice_faces;
-  target_ = Target(of_lattice, result_.report.input_vertices, frame_.scale);
-  mean_length_ = target_.edge_length(area_);
+  target_ = Target(wanted_, lattice_faces, result_.report.input_vertices, frame_.scale);
 }
 
 void Pipeline::change_target(const RemeshOptions& options) {

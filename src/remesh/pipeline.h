@@ -51,7 +51,9 @@ class Pipeline {
   /// Where refine_for_details() leaves inverted quads, what there would be without it: that is kept
   /// if it has fewer.
   void try_coarser_lattice();
-  void count_singularities();
+
+  /// Their edge length and singularities.
+  void report_fields();
 
   /// Another target, not finer than the one that all was prepared for.
   void change_target(const RemeshOptions& options);
@@ -69,6 +71,8 @@ class Pipeline {
   bool take_strips(Extraction& extraction);
   void drop_pieces();
 
+  /// position_and_extract(), but there may be no faces.
+  void find_faces();
   void aim_at(OutputFaces lattice_faces);
   /// Returns whether the lattice is finer now.
   bool choose_lattice();
@@ -94,10 +98,14 @@ class Pipeline {
   /// Into the quads that are written.
   void split(Extraction& extraction) const;
   void finish_borders();
+  /// Of the lattice.
+  double mean_length() const { return target_.edge_length(area_); }
   double growth() const { return target_.growth(options_.sizing.grading); }
   const Graph& graph() const { return hierarchy_.levels[0]; }
   /// All but the finest, which together are as large as it.
   void drop_coarse_levels();
+  /// Those again, if they were dropped.
+  void complete_levels();
   Fields& fields() { return result_.fields; }
   PositionField solve_positions();
 
@@ -120,7 +128,7 @@ class Pipeline {
   bool is_sharpened_ = false;
   Mesh surface_;
   Hierarchy hierarchy_;
-  double area_ = 0, mean_length_ = 0;
+  double area_ = 0;
   EdgeLength lengths_;
   std::vector<std::uint8_t>
       locked_;           // one flag a vertex of the surface; of RemeshOptions::lock_borders

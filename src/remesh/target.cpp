@@ -11,16 +11,17 @@ int posy_of(OutputFaces faces) {
   return faces == OutputFaces::triangles || faces == OutputFaces::hexagons ? 6 : 4;
 }
 
-Target::Target(const RemeshOptions& options, std::size_t input_vertices, double scale) {
+Target::Target(const RemeshOptions& options, OutputFaces lattice_faces, std::size_t input_vertices,
+               double scale) {
   // A cell of the triangular lattice is two triangles, or one vertex; of its dual, two vertices or
   // one hexagon. A pure quad mesh has four quads, and four vertices, for each of the lattice's
   // before its split.
-  if (posy_of(options.faces) == 6) cell_area_ = std::sqrt(3.0) / 2;
-  kind_ = options.faces;
-  const bool split = options.faces == OutputFaces::quads;
-  const bool dual = options.faces == OutputFaces::hexagons;
+  if (posy_of(lattice_faces) == 6) cell_area_ = std::sqrt(3.0) / 2;
+  kind_ = lattice_faces;
+  const bool split = lattice_faces == OutputFaces::quads;
+  const bool dual = lattice_faces == OutputFaces::hexagons;
   sides_ = split ? 2 : 1;
-  faces_per_cell_ = split ? 4 : options.faces == OutputFaces::triangles ? 2 : 1;
+  faces_per_cell_ = split ? 4 : lattice_faces == OutputFaces::triangles ? 2 : 1;
   const double vertices_per_cell = split ? 4 : dual ? 2 : 1;
   if (options.edge_length > 0) {
     // The edge of a hexagon is the triangles' divided by the root of three.

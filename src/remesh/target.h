@@ -15,8 +15,10 @@ bool splits_only_once(const RemeshOptions& options);
 class Target {
  public:
   Target() = default;
+  /// `lattice_faces`: what the cells of the lattice become; for OutputFaces::quads each is four.
   /// `scale`: input units a unit of the surface.
-  Target(const RemeshOptions& options, std::size_t input_vertices, double scale);
+  Target(const RemeshOptions& options, OutputFaces lattice_faces, std::size_t input_vertices,
+         double scale);
 
   /// The edge length that gives a surface of this area as many lattice cells as are wanted; or the
   /// one asked for.

@@ -60,7 +60,8 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const Context& 
   if (!planes.empty()) {
     input = triangulate(input);
     // Before the cut, whose border has to stay where it is.
-    const double side = Target(options, vertices, 1).face_side(surface_area(input, context));
+    const Target target(options, options.faces, vertices, 1);
+    const double side = target.face_side(surface_area(input, context));
     if (take_out_noise(input, options, side, notes, context)) {
       options.features.creases = Creases::marked;
     }
