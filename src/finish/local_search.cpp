@@ -145,10 +145,13 @@ bool LocalSearch::has_news(Index v) const {
 }
 
 float LocalSearch::quality_here(Index f) const {
+  // On a crease, and more so at a corner, the normal is a mean of sides that the face is not on.
   const auto face = std::as_const(mesh_.faces)[f];
-  Vec3 upward = Vec3::Zero();
-  for (const Index v : face) upward += normals_[v];
-  return face_quality(face, mesh_.positions, upward.normalized());
+  Vec3 of_free = Vec3::Zero(), of_lines = Vec3::Zero();
+  for (const Index v : face) (placement_.is_on_line(v) ? of_lines : of_free) += normals_[v];
+  const float q = face_quality(face, mesh_.positions, (of_free + of_lines).normalized());
+  if (q > 0 || of_free.isZero() || of_lines.isZero()) return q;
+  return std::max(q, face_quality(face, mesh_.positions, of_free.normalized()));
 }
 
 float LocalSearch::quality_among_neighbors(Index f) const {

@@ -47,6 +47,7 @@ class Placement {
 
   bool is_fixed(std::size_t v) const { return rails_.is_fixed(v); }
   bool is_tethered(std::size_t v) const { return tether_[v] != no_index; }
+  bool is_on_line(std::size_t v) const { return !rails_.is_free(v); }
   /// Whether it may go anywhere on the surface.
   bool is_free(std::size_t v) const { return rails_.is_free(v) && !is_tethered(v); }
 
