@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "finish/bare_ends.h"
 #include "finish/crossings.h"
 #include "finish/fit_to_rails.h"
 #include "finish/go_around.h"
@@ -367,6 +368,14 @@ TEST(Finish, QuadsWithoutRoomAreTakenAway) {
   made::expect_same_topology(s, mesh_statistics(shape));
 }
 
+Index nearest(const Mesh& surface, const Vec3& p) {
+  const auto nearer = [&](const Vec3& a, const Vec3& b) {
+    return (a - p).squaredNorm() < (b - p).squaredNorm();
+  };
+  return static_cast<Index>(std::ranges::min_element(surface.positions, nearer) -
+                            surface.positions.begin());
+}
+
 /// A leg of five faces around: from its far side no step over the surface leads back.
 TEST(Finish, VerticesComeBackFromTheOtherSide) {
   constexpr double radius = 0.3, top = 2;
@@ -374,13 +383,6 @@ TEST(Finish, VerticesComeBackFromTheOtherSide) {
   for (int k = -20; k <= 20; ++k) profile.push_back({radius, top * k / 20});
   const Mesh surface = triangulate(turned(profile, 60));
   const Graph graph = build_graph(surface);
-  const auto nearest = [&](const Vec3& p) {
-    const auto nearer = [&](const Vec3& a, const Vec3& b) {
-      return (a - p).squaredNorm() < (b - p).squaredNorm();
-    };
-    return static_cast<Index>(std::ranges::min_element(surface.positions, nearer) -
-                              surface.positions.begin());
-  };
   constexpr Index around_leg = 5, rings = 7, strayed = 3 * around_leg;
   Extraction leg;
   for (Index k = 0; k < around_leg * rings; ++k) {
@@ -390,7 +392,7 @@ TEST(Finish, VerticesComeBackFromTheOtherSide) {
     leg.mesh.positions.push_back(
         Eigen::Vector3d(radius * std::cos(turned_angle), radius * std::sin(turned_angle), z)
             .cast<float>());
-    leg.nodes.push_back(nearest(leg.mesh.positions.back()));
+    leg.nodes.push_back(nearest(surface, leg.mesh.positions.back()));
     if (k + around_leg >= around_leg * rings) continue;
     const Index next = k % around_leg + 1 < around_leg ? k + 1 : k + 1 - around_leg;
     leg.mesh.faces.push_back(std::array<Index, 4>{k, next, next + around_leg, k + around_leg});
@@ -404,6 +406,26 @@ TEST(Finish, VerticesComeBackFromTheOtherSide) {
   EXPECT_EQ(moved, std::vector<Index>{strayed});
   EXPECT_LT((leg.mesh.positions[strayed] - Vec3(static_cast<float>(radius), 0, 0)).norm(), 0.1);
   EXPECT_GT(normals[strayed].x(), 0.9f);
+}
+
+/// A triangle in a plate of four bare corners.
+TEST(Finish, AVertexHoldsOnlyTheEndFarthestFromIt) {
+  const Mesh plate = sample_shape("plate");
+  Extraction triangle;
+  triangle.mesh.positions = {Vec3(0.1f, 0, 0), Vec3(-0.1f, 0.1f, 0), Vec3(-0.1f, -0.1f, 0)};
+  triangle.mesh.faces.push_back(std::array<Index, 3>{0, 1, 2});
+  for (const Vec3& p : triangle.mesh.positions) triangle.nodes.push_back(nearest(plate, p));
+  const std::vector<Reach> ends = find_bare_ends(triangle, vertex_faces(triangle.mesh),
+                                                 build_graph(plate), EdgeLength(0.2f), Context());
+  ASSERT_EQ(ends.size(), 3u);
+  std::vector<Index> vertices;
+  for (const Reach& end : ends) {
+    vertices.push_back(end.vertex);
+    EXPECT_FLOAT_EQ(end.tip.cwiseAbs().x(), 0.5f);
+    EXPECT_FLOAT_EQ(end.tip.cwiseAbs().y(), 0.5f);
+  }
+  std::ranges::sort(vertices);
+  EXPECT_EQ(vertices, (std::vector<Index>{0, 1, 2}));
 }
 
 /// A ball with a horn about as thick as a face of the target is large.

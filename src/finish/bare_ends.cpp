@@ -160,15 +160,15 @@ std::vector<Reach> find_bare_ends(const Extraction& extraction, const VertexFace
     return std::pair(b.distance, a.node) < std::pair(a.distance, b.node);
   });
   std::vector<Reach> result;
-  std::vector<Vec3> taken;
   for (const Tip& tip : tips) {
     const Vec3& end = graph.positions[tip.node];
     const float radius = reach[tip.node];
-    if (std::any_of(taken.begin(), taken.end(),
-                    [&](const Vec3& other) { return (end - other).norm() < 2 * radius; })) {
+    // A vertex can hold only one end: the one farthest away.
+    if (std::ranges::any_of(result, [&](const Reach& other) {
+          return other.vertex == ways.vertex[tip.node] || (end - other.tip).norm() < 2 * radius;
+        })) {
       continue;
     }
-    taken.push_back(end);
     // Back from the tip until it is far enough.
     const auto distance = [&](Index i) { return (graph.positions[i] - end).norm(); };
     Index node = tip.node, outer = tip.node;
