@@ -3,9 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <vector>
 
+#include "features/fading_creases.h"
+#include "features/mechanical_creases.h"
 #include "kept_creases.h"
 #include "mesh/border.h"
 #include "meshgrain/remesh.h"
@@ -116,6 +121,45 @@ TEST(Features, OfCreasesBesideEachOtherTheFirstStays) {
     EXPECT_EQ(lines.corners.size(), 4u);
     for (const Vec3& p : lines.positions) EXPECT_FLOAT_EQ(p.z(), lines.positions[0].z());
   }
+}
+
+/// Along the ridge of a roof: the share of its length that a crease covers which is told at its
+/// first edges. `degrees(x)`: the angle between the sides of the ridge there, x from 0 to 1.
+template <typename Degrees>
+double followed_along_ridge(const Degrees& degrees) {
+  constexpr Index steps = 20;
+  Mesh roof;
+  for (Index k = 0; k <= steps; ++k) {
+    const double x = static_cast<double>(k) / steps;
+    const double low = -std::tan(degrees(x) * std::numbers::pi / 360);
+    for (const double y : {-1.0, 0.0, 1.0}) {
+      roof.positions.push_back(Eigen::Vector3d(8 * x, y, y == 0 ? 0 : low).cast<float>());
+    }
+    if (k == 0) continue;
+    for (const Index a : {3 * k - 3, 3 * k - 2}) {
+      roof.faces.push_back(std::array<Index, 3>{a, a + 3, a + 4});
+      roof.faces.push_back(std::array<Index, 3>{a, a + 4, a + 1});
+    }
+  }
+  const std::vector<SharpEdge> edges = sharp_edges(roof, flat_degrees);
+  std::vector<std::uint8_t> is_crease;
+  for (const SharpEdge& edge : edges) {
+    is_crease.push_back(edge.cosine < std::cos(50 * std::numbers::pi / 180));
+  }
+  follow_fading_creases(roof, edges, is_crease);
+  double followed = 0;
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const auto [a, b] = edges[e].ends;
+    EXPECT_TRUE(!is_crease[e] || (a % 3 == 1 && b % 3 == 1)) << "not along the ridge";
+    followed += is_crease[e];
+  }
+  return followed / steps;
+}
+
+TEST(Features, CreasesAreFollowedWhereTheyBecomeFlat) {
+  EXPECT_NEAR(followed_along_ridge([](double x) { return 60 * (1 - x); }), 1 - 10.0 / 60, 0.051);
+  // Facets of what is round are another thing.
+  EXPECT_NEAR(followed_along_ridge([](double x) { return x < 0.52 ? 60 : 20; }), 0.5, 0.051);
 }
 
 TEST(Features, CreasesAndCornersAreKept) {

@@ -1,10 +1,12 @@
 #include "features/mechanical_creases.h"
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 
 #include "features/clean_lines.h"
+#include "features/fading_creases.h"
 
 namespace meshgrain {
 namespace {
@@ -26,9 +28,8 @@ double length_above(const Mesh& mesh, std::span<const SharpEdge> edges, double d
   return sum;
 }
 
-/// Those sharper than an angle at which it matters least.
-std::vector<std::array<Index, 2>> above_best_threshold(const Mesh& mesh,
-                                                       std::span<const SharpEdge> edges) {
+/// Flags of those sharper than an angle at which it matters least.
+std::vector<std::uint8_t> above_best_threshold(const Mesh& mesh, std::span<const SharpEdge> edges) {
   double threshold = sharp, least = std::numeric_limits<double>::infinity();
   constexpr double lowest = 20, window = 1.25, step = 2;
   for (double degrees = sharp; degrees >= lowest; degrees -= step) {
@@ -38,9 +39,16 @@ std::vector<std::array<Index, 2>> above_best_threshold(const Mesh& mesh,
     least = doubtful;
     threshold = degrees;
   }
+  std::vector<std::uint8_t> result;
+  for (const SharpEdge& edge : edges) result.push_back(is_above(edge, threshold));
+  return result;
+}
+
+std::vector<std::array<Index, 2>> flagged(std::span<const SharpEdge> edges,
+                                          const std::vector<std::uint8_t>& flags) {
   std::vector<std::array<Index, 2>> result;
-  for (const SharpEdge& edge : edges) {
-    if (is_above(edge, threshold)) result.push_back(edge.ends);
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    if (flags[e]) result.push_back(edges[e].ends);
   }
   return result;
 }
@@ -56,7 +64,7 @@ std::vector<std::array<Index, 2>> clear_creases(const Mesh& mesh, std::span<cons
                                                 double clearly) {
   const CreaseLengths lengths = crease_lengths(mesh, edges);
   if (lengths.clear <= clearly * lengths.doubtful) return {};
-  return above_best_threshold(mesh, edges);
+  return flagged(edges, above_best_threshold(mesh, edges));
 }
 
 std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh,
@@ -65,7 +73,9 @@ std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh,
   const bool is_mechanical =
       lengths.clear > lengths.doubtful || share_of_clean_lines(mesh, edges, sharp) > clean_enough;
   if (!is_mechanical) return {};
-  return above_best_threshold(mesh, edges.sharp);
+  std::vector<std::uint8_t> is_crease = above_best_threshold(mesh, edges.sharp);
+  follow_fading_creases(mesh, edges.sharp, is_crease);
+  return flagged(edges.sharp, is_crease);
 }
 
 }  // namespace meshgrain
