@@ -51,8 +51,8 @@ void prepare(Pipeline& pipeline, Mesh input) {
   pipeline.refine();
   pipeline.build_graph();
   pipeline.find_lines();
-  pipeline.refine_for_details();
   pipeline.build_levels();
+  pipeline.refine_for_details();
   pipeline.size_faces();
   pipeline.refine_for_sizes();
   pipeline.orient();

@@ -1,5 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <numbers>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -121,6 +125,49 @@ TEST(OnlyQuads, LinesAFaceApartAreKept) {
     EXPECT_EQ(statistics.inverted_quads, 0u);
     EXPECT_GT(made::kept_creases(input, output).creases, 0.97);
   }
+}
+
+/// A torus of radius 1 around the z axis.
+Mesh ring(double radius) {
+  constexpr Index along = 200, around = 24;
+  Mesh mesh;
+  for (Index k = 0; k < along * around; ++k) {
+    const double a = 2 * std::numbers::pi * (k / around) / along;
+    const double b = 2 * std::numbers::pi * (k % around) / around;
+    const double from_axis = 1 + radius * std::cos(b);
+    mesh.positions.push_back(
+        Eigen::Vector3d(from_axis * std::cos(a), from_axis * std::sin(a), radius * std::sin(b))
+            .cast<float>());
+    const Index next = k % around + 1 < around ? k + 1 : k + 1 - around;
+    const auto beyond = [&](Index v) { return (v + around) % (along * around); };
+    mesh.faces.push_back(std::array<Index, 3>{k, beyond(k), beyond(next)});
+    mesh.faces.push_back(std::array<Index, 3>{k, beyond(next), next});
+  }
+  return mesh;
+}
+
+/// Of three to eight quads around. A coarser lattice often leaves inverted ones.
+TEST(OnlyQuads, ThinRingsAreEven) {
+  constexpr double radii[] = {0.1, 0.12, 0.15};
+  constexpr std::size_t counts[] = {150, 200, 300};
+  double sigma = 0, jacobian = 0;
+  for (const double radius : radii) {
+    const Mesh input = ring(radius);
+    for (const std::size_t count : counts) {
+      SCOPED_TRACE(std::to_string(radius) + " " + std::to_string(count));
+      RemeshOptions options;
+      options.face_count = count;
+      const Mesh output = remesh(input, options).mesh;
+      expect_quads(output);
+      const MeshStatistics statistics = mesh_statistics(output);
+      made::expect_same_topology(statistics, mesh_statistics(input));
+      EXPECT_EQ(statistics.inverted_quads, 0u);
+      sigma += statistics.area_sigma / (std::size(radii) * std::size(counts));
+      jacobian += statistics.jacobian_p01 / (std::size(radii) * std::size(counts));
+    }
+  }
+  EXPECT_LT(sigma, 0.25);
+  EXPECT_GT(jacobian, 0.65);
 }
 
 }  // namespace

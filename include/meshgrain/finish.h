@@ -23,6 +23,9 @@ std::size_t make_manifold(Extraction& extraction);
 
 struct SmoothOptions {
   int iterations = 72;
+  /// Over how many of them steps gain their full momentum. With all of it from the first, longest
+  /// steps on, thin limbs of few faces can swing through themselves.
+  int slow_start = 0;
   /// How strongly faces are drawn to one size, 0 to 1: areas become more even, angles a little
   /// less.
   double evenness = 0.65;

@@ -95,6 +95,7 @@ class Smoother {
   std::vector<Index> corners_;  // beside around_.faces: which corner of the face the vertex is
   EdgeLength sizes_{1.0f};      // relative, of the vertices where they are
   std::vector<Vec3> previous_;  // positions, one iteration ago
+  int done_ = 0;                // iterations
   std::vector<Vec3> targets_;   // of every corner of a face
   std::vector<Vec3> normals_;   // of the surface
 
@@ -207,12 +208,16 @@ Vec3 Smoother::mean_target(Index v) const {
 void Smoother::iterate(int iterations, bool put_on) {
   // Each step goes on in part where the last one went (Polyak's heavy ball): faults that reach far
   // then fade in as many iterations as they are edges wide, rather than in the square of that.
-  constexpr float momentum = 0.9f;
+  constexpr float most_momentum = 0.9f;
   constexpr int between_looks = 4;  // at sizes, and at lines
   std::vector<Vec3> next(mesh_.positions.size());
   float side = 0;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     context_.progress("smoothing", static_cast<double>(iteration) / iterations);
+    const float momentum = done_ < options_.slow_start ? most_momentum * static_cast<float>(done_) /
+                                                             static_cast<float>(options_.slow_start)
+                                                       : most_momentum;
+    ++done_;
     const bool look = iteration % between_looks == 0;
     const bool may_look = iteration % 2 == 0;  // at the surface
     const bool exactly = put_on && iteration + 1 == iterations;

@@ -164,6 +164,13 @@ void Pipeline::find_lines() {
   });
 }
 
+bool Pipeline::is_coarse_for_bends() const {
+  // Both were measured: beyond them the finer lattice only has more singularities.
+  constexpr double few_faces = 1500, little_bent = 0.945;
+  return area_ < few_faces * target_.face_area(area_) &&
+         flattened_share(hierarchy_, 2 * std::pow(mean_length(), 2), context_) < little_bent;
+}
+
 bool Pipeline::choose_lattice() {
   const bool free = options_.guides.empty() && options_.fields == nullptr && borders_.empty();
   if (options_.faces != OutputFaces::quads || is_cloud_ || !nodes_are_vertices_ || !free) {
@@ -175,13 +182,14 @@ bool Pipeline::choose_lattice() {
     return share_abreast(features_, on_border, 1.5 * side) > 0.25 ||
            share_abreast(features_, on_border, 2 * side) > 0.6;
   };
-  if (!many_abreast({})) return false;  // nor are there without the borders
+  has_thin_limbs_ = is_coarse_for_bends();
+  if (!has_thin_limbs_ && !many_abreast({})) return false;  // nor are there without the borders
   const auto border = border_edges(surface_, context_);
   // Where more than two faces meet, all of them would have to get the same new vertices.
   if (rim_edges(surface_, context_).size() != border.size()) return false;
   std::vector<std::uint8_t> on_border(surface_.positions.size(), 0);
   for (const auto& [a, b] : border) on_border[a] = on_border[b] = 1;
-  if (!many_abreast(on_border)) return false;
+  if (!has_thin_limbs_ && !many_abreast(on_border)) return false;
   aim_at(OutputFaces::quad_dominant);
   return true;
 }
@@ -192,6 +200,7 @@ void Pipeline::refine_for_details() {
   stage_("order", [&] { put_in_order(); });
   build_graph();
   find_lines();
+  build_levels();
 }
 
 void Pipeline::size_faces() {
@@ -402,6 +411,7 @@ void Pipeline::smooth_faces() {
     finish_borders();
     SmoothOptions smoothing;
     smoothing.iterations = options_.smoothing;
+    if (has_thin_limbs_) smoothing.slow_start = 12;
     // The more regular, the more the grid must stretch. Triangles of one size are regular; the
     // triangles among quads are smaller than these.
     if (options_.faces == OutputFaces::quads) {

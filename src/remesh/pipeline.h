@@ -31,11 +31,12 @@ class Pipeline {
   void build_graph();
   void find_lines();
 
-  /// Pure quads whose lattice is twice as coarse as they are cannot follow lines that run along
-  /// each other a face or two apart. Where there are many of these, the lattice is as fine as the
-  /// quads.
-  void refine_for_details();
   void build_levels();
+
+  /// Pure quads whose lattice is twice as coarse as they are cannot follow lines that run along
+  /// each other a face or two apart, nor limbs of few faces around. Where there are many of these,
+  /// the lattice is as fine as the quads.
+  void refine_for_details();
   void size_faces();
 
   /// Finer still where small faces are wanted.
@@ -74,6 +75,8 @@ class Pipeline {
   /// position_and_extract(), but there may be no faces.
   void find_faces();
   void aim_at(OutputFaces lattice_faces);
+  /// Whether there are few faces for how much the surface bends.
+  bool is_coarse_for_bends() const;
   /// Returns whether the lattice is finer now.
   bool choose_lattice();
   /// Those longer than the target allows. Returns whether there are any.
@@ -124,7 +127,8 @@ class Pipeline {
   // What the cells of the lattice become: OutputFaces::quads are four each. Where they are to be
   // quads themselves, it is quad_dominant, and few of the others are left for extraction to mend.
   OutputFaces lattice_faces_ = OutputFaces::quads;
-  RemeshOptions wanted_;  // what the target goes by
+  bool has_thin_limbs_ = false;  // for its faces, see is_coarse_for_bends()
+  RemeshOptions wanted_;         // what the target goes by
   bool is_sharpened_ = false;
   Mesh surface_;
   Hierarchy hierarchy_;
