@@ -170,5 +170,23 @@ TEST(OnlyQuads, ThinRingsAreEven) {
   EXPECT_GT(jacobian, 0.65);
 }
 
+/// No limb of a half is a single quad wide, whose sides would both be in the plane.
+TEST(OnlyQuads, ThinRingsCanBeMirrored) {
+  for (const double radius : {0.08, 0.1, 0.12}) {
+    const Mesh input = ring(radius);
+    for (const std::size_t count : {120, 150, 200, 300}) {
+      for (const bool both : {false, true}) {
+        SCOPED_TRACE(std::to_string(radius) + " " + std::to_string(count));
+        RemeshOptions options;
+        options.face_count = count;
+        options.symmetry.axes = {both, false, true};
+        const Mesh output = remesh(input, options).mesh;
+        expect_quads(output);
+        made::expect_same_topology(mesh_statistics(output), mesh_statistics(input));
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace meshgrain

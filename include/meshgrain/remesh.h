@@ -46,8 +46,13 @@ struct RemeshOptions {
   /// From 0, the best shapes, to 1, the fewest irregular vertices: hardly more than the orientation
   /// field has singularities.
   double regularity = 0.5;
-  /// Of meshes. One half is remeshed, and its mirror image added; RemeshResult::fields are those of
-  /// the half. An input that is not symmetric within one percent of its diagonal stays whole.
+  /// Whether pure quads may have a lattice as fine as they are where creases are close to each
+  /// other or limbs thin, so that these may be a single quad wide; else every cell becomes four
+  /// quads.
+  bool fine_lattice = true;
+  /// Of meshes. One half is remeshed, without `fine_lattice`, and its mirror image added;
+  /// RemeshResult::fields are those of the half. An input that is not symmetric within one percent
+  /// of its diagonal stays whole.
   Symmetry symmetry;
   CurvatureAlignment curvature;
   int smoothing = 72;     ///< Iterations of smooth() (0: only put onto the surface).

@@ -172,7 +172,8 @@ bool Pipeline::is_coarse_for_bends() const {
 }
 
 bool Pipeline::choose_lattice() {
-  const bool free = options_.guides.empty() && options_.fields == nullptr && borders_.empty();
+  const bool free = options_.fine_lattice && options_.guides.empty() &&
+                    options_.fields == nullptr && borders_.empty();
   if (options_.faces != OutputFaces::quads || is_cloud_ || !nodes_are_vertices_ || !free) {
     return false;
   }

@@ -1,8 +1,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <utility>
+#include <vector>
 
 #include "mesh/border.h"
 #include "meshgrain/clean.h"
@@ -10,6 +12,7 @@
 #include "meshgrain/surface.h"
 #include "meshgrain/symmetry.h"
 #include "meshgrain/triangulate.h"
+#include "symmetry/chords_of_plane.h"
 
 namespace meshgrain {
 namespace {
@@ -44,54 +47,6 @@ Faces keep_faces(const Mesh& mesh, const std::vector<std::uint8_t>& on_plane) {
     }
   }
   return kept;
-}
-
-/// Halves edges inside of the mesh that join two vertices of the plane: there the two halves would
-/// meet as well, and more than two faces. Triangles stay triangles.
-void split_chords(Mesh& mesh, std::vector<std::uint8_t>& on_plane) {
-  std::map<std::pair<Index, Index>, int> uses;
-  bool triangles = true;
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    const auto face = std::as_const(mesh.faces)[f];
-    triangles = triangles && face.size() == 3;
-    for (std::size_t k = 0; k < face.size(); ++k) {
-      const Index a = face[k], b = face[(k + 1) % face.size()];
-      if (on_plane[a] && on_plane[b]) ++uses[std::minmax(a, b)];
-    }
-  }
-  std::map<std::pair<Index, Index>, Index> middles;
-  for (const auto& [edge, count] : uses) {
-    if (count < 2) continue;
-    middles[edge] = static_cast<Index>(mesh.positions.size());
-    mesh.positions.push_back(0.5f * (mesh.positions[edge.first] + mesh.positions[edge.second]));
-    if (!mesh.normals.empty()) mesh.normals.push_back(Vec3(mesh.normals[edge.first]));
-    on_plane.push_back(0);
-  }
-  if (middles.empty()) return;
-  Faces faces;
-  std::vector<Index> corners;
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    const auto face = std::as_const(mesh.faces)[f];
-    corners.clear();
-    std::size_t last_added = 0;
-    for (std::size_t k = 0; k < face.size(); ++k) {
-      corners.push_back(face[k]);
-      const auto it = middles.find(std::minmax(face[k], face[(k + 1) % face.size()]));
-      if (it == middles.end()) continue;
-      last_added = corners.size();
-      corners.push_back(it->second);
-    }
-    if (!triangles || corners.size() == 3) {
-      faces.push_back(corners);
-      continue;
-    }
-    std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(last_added),
-                corners.end());
-    for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
-      faces.push_back({corners[0], corners[k], corners[k + 1]});
-    }
-  }
-  mesh.faces = std::move(faces);
 }
 
 }  // namespace
@@ -169,7 +124,7 @@ void add_mirror_image(Mesh& mesh, int axis, double near) {
     }
   }
   mesh.faces = keep_faces(mesh, on_plane);
-  split_chords(mesh, on_plane);
+  take_away_chords(mesh, on_plane);
   const auto count = static_cast<Index>(mesh.positions.size());
   std::vector<Index> image(count);
   for (Index v = 0; v < count; ++v) {

@@ -77,6 +77,8 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const Context& 
     const double middle = input.origin[plane.axis];
     coordinate = middle + std::abs(coordinate - middle);
   }
+  // Where a half is a single quad wide, its two sides would be in the plane.
+  if (!planes.empty()) options.fine_lattice = false;
   RemeshResult result = remesh(std::move(input), options, context);
   for (const MirrorPlane& plane : planes) {
     add_mirror_image(result.mesh, plane.axis, 0.2 * edge_lengths(result.mesh, context).mean);
