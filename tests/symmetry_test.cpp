@@ -10,6 +10,8 @@
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
 #include "meshgrain/statistics.h"
+#include "meshgrain/surface.h"
+#include "meshgrain/triangulate.h"
 #include "same_topology.h"
 
 namespace meshgrain {
@@ -62,6 +64,19 @@ TEST(Symmetry, ThePlaneIsFound) {
   EXPECT_NEAR(plane.offset, 3, 1e-3);
   EXPECT_LT(plane.mismatch, 1e-4);
   EXPECT_GT(find_mirror_plane(mesh, 1).mismatch, 0.01);
+}
+
+/// One vertex of a plate lies a little beyond the plane, those around it do not.
+TEST(Symmetry, CrumbsOfACutAreDropped) {
+  Mesh plate = triangulate(sample_shape("plate"));
+  const Vec3 place(-0.3f, 0, 0);
+  const auto nearer = [&](const Vec3& a, const Vec3& b) {
+    return (a - place).norm() < (b - place).norm();
+  };
+  *std::ranges::min_element(plate.positions, nearer) = Vec3(0.01f, 0, 0.5f);
+  cut_at(plate, {0, 0, 0});
+  EXPECT_EQ(mesh_statistics(plate).components, 1u);
+  EXPECT_NEAR(surface_area(plate), 0.5, 1e-3);
 }
 
 TEST(Symmetry, ResultsAreExactlySymmetric) {

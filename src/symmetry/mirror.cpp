@@ -13,6 +13,7 @@
 #include "meshgrain/symmetry.h"
 #include "meshgrain/triangulate.h"
 #include "symmetry/chords_of_plane.h"
+#include "util/union_find.h"
 
 namespace meshgrain {
 namespace {
@@ -49,6 +50,40 @@ Faces keep_faces(const Mesh& mesh, const std::vector<std::uint8_t>& on_plane) {
   return kept;
 }
 
+/// What each vertex is connected with.
+UnionFind pieces(const Mesh& mesh) {
+  UnionFind result(mesh.positions.size());
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    for (const Index v : mesh.faces[f]) result.unite(mesh.faces[f][0], v);
+  }
+  return result;
+}
+
+/// Drops what a cut has parted from the rest of a piece and is tiny beside it: where a shape is not
+/// exactly symmetric, as on a leg that crosses the plane by a little. `whole`: pieces before the
+/// cut, of the vertices that there were.
+void drop_crumbs(Mesh& mesh, UnionFind& whole, std::size_t vertices) {
+  constexpr double tiny = 1e-3;  // of the area
+  UnionFind parts = pieces(mesh);
+  std::map<Index, double> area;     // of parts
+  std::map<Index, Index> source;    // of parts: the piece before
+  std::map<Index, double> largest;  // of these: the area of a part
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const Index part = parts.find(mesh.faces[f][0]);
+    area[part] += face_area(mesh, f);
+    for (const Index v : std::as_const(mesh.faces)[f]) {
+      if (v < vertices) source[part] = whole.find(v);
+    }
+  }
+  for (const auto& [part, piece] : source) largest[piece] = std::max(largest[piece], area[part]);
+  Faces kept;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const Index part = parts.find(mesh.faces[f][0]);
+    if (area[part] > tiny * largest[source[part]]) kept.push_back(std::as_const(mesh.faces)[f]);
+  }
+  mesh.faces = std::move(kept);
+}
+
 }  // namespace
 
 MirrorPlane find_mirror_plane(const Mesh& mesh, int axis, const Context& context) {
@@ -72,6 +107,8 @@ void cut_at(Mesh& mesh, const MirrorPlane& plane) {
     const double d = p[axis] - plane.offset;
     p[axis] = std::abs(d) < tiny ? 0 : static_cast<float>(d);
   }
+  UnionFind whole = pieces(mesh);
+  const std::size_t vertices = mesh.positions.size();
   std::map<std::pair<Index, Index>, Index> crossings;
   const auto cross = [&](Index a, Index b) {
     const auto [it, is_new] =
@@ -110,6 +147,7 @@ void cut_at(Mesh& mesh, const MirrorPlane& plane) {
     if ((from > 0 && to < 0) || (from < 0 && to > 0)) (from < 0 ? a : b) = cross(a, b);
   }
   mesh.faces = std::move(above);
+  drop_crumbs(mesh, whole, vertices);
   mesh = triangulate(mesh);
   clean(mesh);  // the vertices and marked edges of the other half
 }
