@@ -66,32 +66,53 @@ class LatticeRepair {
 
   /// What the first round must look at, found in parallel: most of a lattice is whole.
   void mark_all(const Context& context) {
+    const std::vector<std::uint8_t> whole = mark_triangles(context);
     const auto edges = static_cast<Index>(map_.halfedges() / 2);
-    const auto mark_if = [&](IndexMarks& marks, std::size_t count, const auto& condition) {
+    const auto mark_if = [&](IndexMarks& marks, const auto& condition) {
       const auto look = [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
-        for (auto i = static_cast<Index>(begin); i < end; ++i) {
-          if (condition(i)) out.push_back(i);
+        for (auto e = static_cast<Index>(begin); e < end; ++e) {
+          if (condition(e)) out.push_back(e);
         }
       };
-      for (const Index i : collect<Index>(count, look, context)) marks.set(i);
+      for (const Index e : collect<Index>(edges, look, context)) marks.set(e);
     };
-    mark_if(zero_edges_, edges, [&](Index e) { return lattice_.jumps[e].is_zero(); });
-    mark_if(flips_, edges, [&](Index e) {
+    mark_if(zero_edges_, [&](Index e) { return lattice_.jumps[e].is_zero(); });
+    mark_if(long_edges_, [&](Index e) { return parts(2 * e) > 1; });
+    mark_if(flips_, [&](Index e) {
       const Index h = 2 * e, t = h + 1;
       if (map_.removed(h) || lattice_.holes[h] || lattice_.holes[t]) return false;
-      return std::max(flip_gain(h), flip_gain(t)) >= least_gain;
+      if (whole[h] && whole[t]) return shortening(h) >= least_gain;
+      return flip_gains(h).most() >= least_gain;
     });
-    mark_if(swings_, map_.halfedges(), [&](Index h) {
-      return !map_.removed(h) && !lattice_.holes[h] && lattice_.triangle(h).is_cone();
-    });
-    context.for_ranges(map_.halfedges(), 4096, [&](std::size_t begin, std::size_t end) {
+  }
+
+  /// Of each halfedge, whether the triangle left of it is plane and has no flaw.
+  std::vector<std::uint8_t> mark_triangles(const Context& context) {
+    std::vector<std::uint8_t> whole(map_.halfedges(), 0);
+    struct Found {
+      Index h;
+      bool is_cone, is_flawed, has_room;
+    };
+    const auto look = [&](std::size_t begin, std::size_t end, std::vector<Found>& out) {
       for (auto h = static_cast<Index>(begin); h < end; ++h) {
-        if (!lattice_.stands_for_triangle(h) || lattice_.triangle(h).flaw() == 0) continue;
-        for (const Index v : piece(h).corners) {
-          std::atomic_ref(sound_[v]).store(0, std::memory_order_relaxed);
+        if (!lattice_.stands_for_triangle(h)) continue;
+        const LatticeTriangle triangle = lattice_.triangle(h);
+        const Found found{h, triangle.is_cone(), triangle.flaw() > 0, has_room(triangle)};
+        if (found.is_cone || found.is_flawed || found.has_room) out.push_back(found);
+        if (triangle.is_plane() && !found.is_flawed) {
+          whole[h] = whole[map_.next(h)] = whole[map_.prev(h)] = 1;
         }
       }
-    });
+    };
+    for (const Found& found : collect<Found>(map_.halfedges(), look, context)) {
+      if (found.has_room) large_.set(found.h);
+      Index h = found.h;
+      for (int k = 0; k < 3; ++k, h = map_.next(h)) {
+        if (found.is_cone) swings_.set(h);
+        if (found.is_flawed) sound_[map_.origin(h)] = 0;
+      }
+    }
+    return whole;
   }
 
   /// For every kind of change: what was refused before would be refused again, unless something has
@@ -99,8 +120,11 @@ class LatticeRepair {
   void mark(Index edge) {
     zero_edges_.set(edge);
     flips_.set(edge);
-    swings_.set(2 * edge);
-    swings_.set(2 * edge + 1);
+    long_edges_.set(edge);
+    for (const Index h : {2 * edge, 2 * edge + 1}) {
+      swings_.set(h);
+      large_.set(h);
+    }
   }
   void mark_star(Index v) {
     changed_[v] = now_;
@@ -139,6 +163,29 @@ class LatticeRepair {
     if (flaws(before_) > 0) return false;
     sound_[v] = now_ + 1;
     return true;
+  }
+
+  /// Vertices that a kind of change was refused to: it would be again until something has changed.
+  class Refused {
+   public:
+    void set(Index v, std::uint32_t now) {
+      if (v >= since_.size()) since_.resize(v + 1 + v / 8, 0);
+      since_[v] = now + 1;
+    }
+    bool still(Index v, const LatticeRepair& repair) const {
+      return v < since_.size() && since_[v] > 0 && !repair.has_changed(v, since_[v] - 1);
+    }
+
+   private:
+    std::vector<std::uint32_t> since_;
+  };
+
+  /// Whether anything has changed, after the change `since`, that a change at v could look at.
+  bool has_changed(Index v, std::uint32_t since) const {
+    if (changed_[v] > since) return true;
+    bool any = false;
+    lattice_.for_each_leaving(v, [&](Index h) { any = any || changed_[map_.target(h)] > since; });
+    return any;
   }
 
   /// Whether every vertex keeps its angle in the lattice when some triangles take the place of
@@ -211,14 +258,14 @@ class LatticeRepair {
       const auto count = static_cast<Index>(map_.halfedges() / 2);  // new ones wait
       for (Index e = flips_.take(0, count); e != no_index; e = flips_.take(e + 1, count)) {
         const Index h = 2 * e;
-        if (map_.removed(h) || !lattice_.may_flip(h)) continue;
+        if (map_.removed(h) || lattice_.holes[h] || lattice_.holes[h + 1]) continue;
         // The new edge may take its jump by way of either end of the old one.
-        const double by_origin = flip_gain(h), by_target = flip_gain(h + 1);
-        const Index better = by_origin >= by_target ? h : h + 1;
+        const FlipGains gains = flip_gains(h);
+        if (gains.most() < least_gain || !lattice_.may_flip(h)) continue;
+        const Index better = gains.by_origin >= gains.by_target ? h : h + 1;
         for (const Index side : {better, PolygonMap::twin(better)}) {
-          if (std::max(by_origin, by_target) < least_gain) break;
-          if ((side == h ? by_origin : by_target) < least_gain || !flip_keeps_angles(side))
-            continue;
+          const double gain = side == h ? gains.by_origin : gains.by_target;
+          if (gain < least_gain || !flip_keeps_angles(side)) continue;
           const std::array<Index, 4> around = corners(side);
           lattice_.flip(side);
           touch(around);
@@ -242,13 +289,31 @@ class LatticeRepair {
     return {{{{a, d, c}, {posy, {ad, dc, ca}}}, {{d, b, c}, {posy, {db, bc, cd}}}}};
   }
 
-  double flip_gain(Index h) const {
-    const std::array<Piece, 2> before{piece(h), piece(PolygonMap::twin(h))};
-    const int left = before[0].lattice.sum().rotation, right = before[1].lattice.sum().rotation;
-    // Two singularities in one triangle would be one of higher index.
-    if (left != 0 && right != 0 && left + right != lattice_.posy) return -1;
-    return flaws(before) + lattice_.squared_length(h) - flaws(flipped(h)) -
+  /// By how much, squared, flip(h) makes the edge shorter.
+  double shortening(Index h) const {
+    return lattice_.squared_length(h) -
            lattice_.metric().squared_length(lattice_.flipped_jump(h).t);
+  }
+
+  /// What is gained by flip(h) and by flip() of its twin.
+  struct FlipGains {
+    double by_origin = -1, by_target = -1;
+    double most() const { return std::max(by_origin, by_target); }
+  };
+
+  FlipGains flip_gains(Index h) const {
+    const Index t = PolygonMap::twin(h);
+    const LatticeTriangle left = lattice_.triangle(h), right = lattice_.triangle(t);
+    const int turn = left.sum().rotation, other_turn = right.sum().rotation;
+    // Two singularities in one triangle would be one of higher index.
+    if (turn != 0 && other_turn != 0 && turn + other_turn != lattice_.posy) return {};
+    const double before = left.flaw() + right.flaw();
+    const auto gain = [&](Index side) {
+      const double most = before + shortening(side);
+      // Most edges are short and between sound triangles: no need to look at those that would be.
+      return most < least_gain ? most : most - flaws(flipped(side));
+    };
+    return {gain(h), gain(t)};
   }
 
   bool flip_keeps_angles(Index h) {
@@ -324,7 +389,7 @@ class LatticeRepair {
   bool shift_vertices() {
     bool any = false;
     for (Index v = 0; v < map_.vertices(); ++v) {
-      if (map_.leaving(v) == no_index || is_sound(v)) continue;
+      if (map_.leaving(v) == no_index || shift_refused_.still(v, *this) || is_sound(v)) continue;
       constexpr double against_stretching = 0.1;
       const double enough = flaws(before_) - least_gain;
       double least = enough + against_stretching * misfit(v);
@@ -343,7 +408,10 @@ class LatticeRepair {
           best = {x, y};
         }
       }
-      if (best == std::array<int, 2>{0, 0}) continue;
+      if (best == std::array<int, 2>{0, 0}) {
+        shift_refused_.set(v, now_);
+        continue;
+      }
       lattice_.shift(v, best);
       touch_star(v);
       any = true;
@@ -355,7 +423,7 @@ class LatticeRepair {
   bool collapse_flawed() {
     bool any = false;
     for (Index v = 0; v < map_.vertices(); ++v) {
-      if (map_.leaving(v) == no_index || is_sound(v)) continue;
+      if (map_.leaving(v) == no_index || collapse_refused_.still(v, *this) || is_sound(v)) continue;
       double least = flaws(before_) - least_gain;
       Index best = no_index;
       lattice_.for_each_leaving(v, [&](Index g) {
@@ -367,7 +435,10 @@ class LatticeRepair {
         least = left;
         best = into;
       });
-      if (best == no_index) continue;
+      if (best == no_index) {
+        collapse_refused_.set(v, now_);
+        continue;
+      }
       const Index kept = map_.origin(best);
       lattice_.collapse_edge(best);
       touch_star(kept);
@@ -394,32 +465,41 @@ class LatticeRepair {
     }
   }
 
+  /// Whether there may be a lattice point inside that has no vertex.
+  static bool has_room(const LatticeTriangle& triangle) {
+    if (triangle.is_cone()) return triangle.flaw() == 0;
+    return triangle.is_plane() && triangle.area() > 2.5;
+  }
+
+  /// How many times as long an edge is as the way to the first lattice point on it.
+  int parts(Index h) const {
+    const auto t = lattice_.jump(h).t;
+    return std::gcd(t[0], t[1]);
+  }
+
   /// Puts vertices at lattice points that have none.
   bool fill_in() {
     bool any = false;
-    auto count = static_cast<Index>(map_.halfedges());
-    for (Index h = 0; h < count; h += 2) {
+    const auto edges = static_cast<Index>(map_.halfedges() / 2);  // new ones wait
+    for (Index e = long_edges_.take(0, edges); e != no_index; e = long_edges_.take(e + 1, edges)) {
+      const Index h = 2 * e;
       if (map_.removed(h)) continue;
-      const auto t = lattice_.jump(h).t;
-      const int parts = std::gcd(t[0], t[1]);
-      if (parts < 2) continue;
+      const int count = parts(h);
+      if (count < 2) continue;
       // Where the middle was flawed and went again, it would for ever.
       if (!split_.insert(edge_of(map_.origin(h), map_.target(h))).second) continue;
-      const int first = parts / 2;
-      lattice_.split(h, {t[0] / parts * first, t[1] / parts * first});
+      const auto t = lattice_.jump(h).t;
+      const int first = count / 2;
+      lattice_.split(h, {t[0] / count * first, t[1] / count * first});
       touch_star(map_.target(h));
       any = true;
     }
     if (any) return true;
-    count = static_cast<Index>(map_.halfedges());
-    for (Index h = 0; h < count; ++h) {
+    const auto count = static_cast<Index>(map_.halfedges());
+    for (Index h = large_.take(0, count); h != no_index; h = large_.take(h + 1, count)) {
       if (!lattice_.stands_for_triangle(h)) continue;
       const LatticeTriangle triangle = lattice_.triangle(h);
-      if (triangle.is_cone()) {
-        any = (triangle.flaw() == 0 && fill_cone(h)) || any;
-      } else if (triangle.is_plane() && triangle.area() > 2.5) {
-        any = fill_plane(h) || any;
-      }
+      if (has_room(triangle)) any = (triangle.is_cone() ? fill_cone(h) : fill_plane(h)) || any;
     }
     return any;
   }
@@ -518,8 +598,9 @@ class LatticeRepair {
   std::vector<Change> changes_;
   std::uint32_t now_ = 0;               // the number of changes so far
   std::vector<std::uint32_t> changed_;  // when each vertex's star last did
-  IndexMarks zero_edges_, flips_;       // edges
-  IndexMarks swings_;                   // halfedges
+  IndexMarks zero_edges_, flips_, long_edges_;
+  IndexMarks swings_, large_;  // halfedges
+  Refused shift_refused_, collapse_refused_;
   std::set<std::array<Index, 2>> split_;
   std::vector<std::uint32_t> sound_;  // when each vertex's star was last found without flaw
 };

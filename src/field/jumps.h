@@ -26,9 +26,9 @@ inline bool is_unit(const std::array<int, 2>& t, int posy) {
 /// Turns a lattice vector by `rotation` steps of 360 / posy degrees; 0 <= rotation <= posy.
 inline std::array<int, 2> rotate_jump(const std::array<int, 2>& t, int rotation, int posy) {
   const int half = posy / 2;
-  const int sign = rotation >= half && rotation < posy ? -1 : 1;
-  const int x = sign * t[0], y = sign * t[1];
-  const int steps = rotation % half;
+  const bool is_opposite = rotation >= half && rotation < posy;
+  const int x = is_opposite ? -t[0] : t[0], y = is_opposite ? -t[1] : t[1];
+  const int steps = rotation == posy ? 0 : rotation - (is_opposite ? half : 0);
   if (steps == 0) return {x, y};
   if (posy == 4) return {-y, x};
   return steps == 1 ? std::array<int, 2>{-y, x + y} : std::array<int, 2>{-x - y, x};
