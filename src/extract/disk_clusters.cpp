@@ -43,26 +43,29 @@ std::vector<std::uint8_t> zero_jumps(const Graph& graph, const OrientationField&
   return rotations;
 }
 
-/// Whether the triangles around a vertex are one closed fan. `rim` gets their edges opposite to it.
-bool is_inside(const Mesh& surface, std::span<const Index> around, Index v,
-               std::vector<std::array<Index, 2>>& rim) {
-  if (around.size() < 3) return false;
-  rim.clear();
-  for (const Index f : around) {
-    const auto corners = surface.faces[f];
-    const std::size_t k = corners[0] == v ? 0 : corners[1] == v ? 1 : 2;
-    rim.push_back({corners[(k + 1) % 3], corners[(k + 2) % 3]});
+/// Whether the triangles around a vertex are one closed fan.
+bool is_inside(const Mesh& surface, std::span<const Index> around, Index v) {
+  // Vertices with more are rare, and may stay alone. As lengths of searches cannot be foretold, it
+  // takes less time to look at all of a few places.
+  constexpr std::size_t most = 16;
+  if (around.size() < 3 || around.size() > most) return false;
+  // The edges opposite to the vertex, padded to half of the places or all.
+  const std::size_t places = around.size() > most / 2 ? most : most / 2;
+  std::array<Index, most> from, to;
+  from.fill(no_index);
+  for (std::size_t k = 0; k < around.size(); ++k) {
+    const auto corners = surface.faces[around[k]];
+    const Index a = corners[0], b = corners[1], c = corners[2];
+    from[k] = a == v ? b : b == v ? c : a;
+    to[k] = a == v ? c : b == v ? a : b;
   }
+  // Who comes back to the first edge only after all others has met each of them once.
   std::size_t edge = 0;
-  for (std::size_t passed = 1; passed <= rim.size(); ++passed) {
-    std::size_t next = rim.size();
-    for (std::size_t k = 0; k < rim.size(); ++k) {
-      if (rim[k][0] != rim[edge][1]) continue;
-      if (next != rim.size()) return false;
-      next = k;
-    }
-    if (next == rim.size()) return false;
-    if (next == 0) return passed == rim.size();
+  for (std::size_t passed = 1; passed <= around.size(); ++passed) {
+    std::size_t next = most;
+    for (std::size_t k = places; k-- > 0;) next = from[k] == to[edge] ? k : next;
+    if (next == most) return false;
+    if (next == 0) return passed == around.size();
     edge = next;
   }
   return false;
@@ -77,11 +80,10 @@ void for_indices(std::size_t count, const Body& body, const Context& context) {
 
 class DiskSearch {
  public:
-  DiskSearch(const Mesh& surface, const VertexFaces& around, const Graph& graph, int posy,
+  DiskSearch(const Mesh& surface, const Graph& graph, int posy,
              std::span<const std::uint8_t> rotations, std::span<const std::uint8_t> is_free,
              const Context& context)
       : surface_(surface),
-        around_(around),
         graph_(graph),
         posy_(posy),
         rotations_(rotations),
@@ -96,6 +98,7 @@ class DiskSearch {
   DiskClusters run() {
     unite();
     point_at_roots();
+    reject_other_jumps();
     reject_other_than_disks();
     std::vector<std::array<Index, 3>> triangles;
     do {
@@ -166,6 +169,7 @@ class DiskSearch {
 
   /// The lower one is the root, so that clusters do not depend on the order of the edges.
   void unite(const Edge& edge) {
+    if (parent_[edge.from] == parent_[edge.to]) return;
     const Index a = find(edge.from), b = find(edge.to);
     if (a == b) return;
     const int between =
@@ -196,29 +200,40 @@ class DiskSearch {
 
   void reject(Index root) { std::atomic_ref(is_bad_[root]).store(1, std::memory_order_relaxed); }
 
-  /// Clusters with other jumps inside, or around a singularity of the orientation field. And those
-  /// that are no disks: a connected part of a surface, and not all of it, is one if its Euler
-  /// number is 1.
-  void reject_other_than_disks() {
-    std::vector<int> euler(graph_.size(), 0);
+  /// Clusters with other jumps inside, or around a singularity of the orientation field.
+  void reject_other_jumps() {
     for_vertices([&](Index i) {
-      const Index root = parent_[i];
-      int own = 1;
       for_each_edge(i, [&](const Edge& edge) {
+        const Index root = parent_[i];
         if (parent_[edge.to] != root) return;
-        --own;
         const bool fits =
             edge.rotation != not_zero && turned(rotation_[i] + edge.rotation) == rotation_[edge.to];
         if (!fits) reject(root);
       });
-      for (const Index f : around_[i]) {
-        const auto face = surface_.faces[f];
-        own += std::ranges::all_of(face, [&](Index v) { return v >= i && parent_[v] == root; });
-      }
-      if (own != 0) std::atomic_ref(euler[root]).fetch_add(own, std::memory_order_relaxed);
     });
+  }
+
+  /// A connected part of a surface, and not all of it, is a disk if its Euler number V - E + F
+  /// is 1. Each edge between two vertices of a cluster is in two triangles, so that a triangle of
+  /// it counts for 1 - 3/2, and one with only one edge of it for -1/2: either lowers the number by
+  /// half.
+  void reject_other_than_disks() {
+    std::vector<int> twice_euler(graph_.size(), 0);
     for_vertices([&](Index i) {
-      if (parent_[i] == i && euler[i] != 1) reject(i);
+      std::atomic_ref(twice_euler[parent_[i]]).fetch_add(2, std::memory_order_relaxed);
+    });
+    for_indices(
+        surface_.faces.size(),
+        [&](Index f) {
+          const auto face = surface_.faces[f];
+          const Index a = parent_[face[0]], b = parent_[face[1]], c = parent_[face[2]];
+          if (a != b && b != c && c != a) return;
+          const Index root = b == c ? b : a;
+          std::atomic_ref(twice_euler[root]).fetch_sub(1, std::memory_order_relaxed);
+        },
+        context_);
+    for_vertices([&](Index i) {
+      if (parent_[i] == i && twice_euler[i] != 2) reject(i);
     });
   }
 
@@ -283,7 +298,6 @@ class DiskSearch {
   }
 
   const Mesh& surface_;
-  const VertexFaces& around_;
   const Graph& graph_;
   int posy_;
   std::span<const std::uint8_t> rotations_, is_free_;
@@ -332,15 +346,13 @@ DiskClusters find_disk_clusters(const Mesh& surface, const Graph& graph,
                                 const Context& context) {
   const VertexFaces around = vertex_faces(surface, context);
   context.for_ranges(graph.size(), 2048, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::array<Index, 2>> rim;
     for (auto v = static_cast<Index>(begin); v < end; ++v) {
-      is_free[v] = is_free[v] && is_inside(surface, around[v], v, rim);
+      is_free[v] = is_free[v] && is_inside(surface, around[v], v);
     }
   });
   const std::vector<std::uint8_t> rotations =
       zero_jumps(graph, orientation, position, energy, is_free, context);
-  DiskClusters disks =
-      DiskSearch(surface, around, graph, position.posy, rotations, is_free, context).run();
+  DiskClusters disks = DiskSearch(surface, graph, position.posy, rotations, is_free, context).run();
   put_roots_in_the_middle(disks, graph, position, context);
   return disks;
 }
