@@ -3,11 +3,56 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "field/rosy.h"
-#include "mesh/vertex_faces.h"
 
 namespace meshgrain {
+namespace {
+
+/// The edges of the faces of a mesh by the vertices where they start, those of each in the order of
+/// the faces.
+class EdgesByOrigin {
+ public:
+  struct Edge {
+    Index target, corner;
+  };
+
+  explicit EdgesByOrigin(const Mesh& mesh) : offsets_(mesh.positions.size() + 1, 0) {
+    const auto corners = mesh.faces.corners();
+    edges_.resize(corners.size());
+    for (const Index v : corners) ++offsets_[v];
+    std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
+    for (std::size_t f = mesh.faces.size(); f-- > 0;) {
+      const auto face = mesh.faces[f];
+      for (std::size_t k = face.size(); k-- > 0;) {
+        edges_[--offsets_[face[k]]] = {face[k + 1 < face.size() ? k + 1 : 0],
+                                       static_cast<Index>(mesh.faces.first(f) + k)};
+      }
+    }
+  }
+
+  std::span<const Edge> operator[](Index v) const {
+    return {edges_.data() + offsets_[v], offsets_[v + 1] - offsets_[v]};
+  }
+
+  /// The corner where the only edge in this direction starts; no_index if there is none or more.
+  Index single(Index from, Index to) const {
+    Index found = no_index;
+    for (const Edge& edge : (*this)[from]) {
+      if (edge.target != to) continue;
+      if (found != no_index) return no_index;
+      found = edge.corner;
+    }
+    return found;
+  }
+
+ private:
+  std::vector<Index> offsets_;
+  std::vector<Edge> edges_;
+};
+
+}  // namespace
 
 PolygonMap::PolygonMap(std::span<const Vec3> positions, std::span<const Vec3> normals,
                        std::span<const std::array<Index, 2>> edges) {
@@ -59,43 +104,20 @@ PolygonMap::PolygonMap(std::span<const Vec3> positions, std::span<const Vec3> no
 PolygonMap::PolygonMap(const Mesh& mesh, std::vector<Index>& sources, std::vector<Index>& corner_at,
                        const Context& context) {
   const Faces& faces = mesh.faces;
-  const VertexFaces around_vertex = vertex_faces(mesh, context);
   const auto corners = faces.corners();
-  std::vector<Index> halfedge_of(corners.size(), no_index);  // of the edge that starts at a corner
-  const auto corner_of = [&](Index face, Index from, Index to) {
-    const auto face_corners = faces[face];
-    for (std::size_t k = 0; k < face_corners.size(); ++k) {
-      if (face_corners[k] == from && face_corners[(k + 1) % face_corners.size()] == to) {
-        return static_cast<Index>(faces.first(face) + k);
-      }
-    }
-    return no_index;
-  };
-  /// The only face that has the edge in this direction, as the corner where it starts.
-  const auto single = [&](Index from, Index to) {
-    Index found = no_index;
-    for (const Index f : around_vertex[from]) {
-      const Index corner = corner_of(f, from, to);
-      if (corner == no_index) continue;
-      if (found != no_index) return no_index;
-      found = corner;
-    }
-    return found;
-  };
+  const EdgesByOrigin edges(mesh);
   // Of each corner, the one where the same edge starts in the other direction.
   std::vector<Index> opposite(corners.size(), no_index);
-  context.for_ranges(faces.size(), 2048, [&](std::size_t begin, std::size_t end) {
-    for (auto f = static_cast<Index>(begin); f < end; ++f) {
-      const auto face = faces[f];
-      for (std::size_t k = 0; k < face.size(); ++k) {
-        const auto corner = static_cast<Index>(faces.first(f) + k);
-        const Index a = face[k], b = face[(k + 1) % face.size()];
-        if (a > b || single(a, b) != corner) continue;  // from the lower end
-        opposite[corner] = single(b, a);
+  context.for_ranges(mesh.positions.size(), 2048, [&](std::size_t begin, std::size_t end) {
+    for (auto v = static_cast<Index>(begin); v < end; ++v) {
+      for (const auto& [target, corner] : edges[v]) {
+        if (v > target || edges.single(v, target) != corner) continue;  // from the lower end
+        opposite[corner] = edges.single(target, v);
         if (opposite[corner] != no_index) opposite[opposite[corner]] = corner;
       }
     }
   });
+  std::vector<Index> halfedge_of(corners.size(), no_index);  // of the edge that starts at a corner
   const auto add_pair = [&] {
     const auto h = static_cast<Index>(next_.size());
     next_.insert(next_.end(), 2, no_index);
@@ -111,6 +133,7 @@ PolygonMap::PolygonMap(const Mesh& mesh, std::vector<Index>& sources, std::vecto
       if (opposite[corner] != no_index) halfedge_of[opposite[corner]] = h + 1;
     }
   }
+
   corner_at.assign(next_.size(), no_index);
   for (Index f = 0; f < faces.size(); ++f) {
     const std::size_t first = faces.first(f), n = faces.degree(f);
@@ -121,6 +144,7 @@ PolygonMap::PolygonMap(const Mesh& mesh, std::vector<Index>& sources, std::vecto
       corner_at[h] = static_cast<Index>(first + k);
     }
   }
+
   // A border halfedge goes on along the border: around its target, past the faces there.
   for (Index h = 0; h < next_.size(); ++h) {
     if (corner_at[h] != no_index) continue;
@@ -129,24 +153,22 @@ PolygonMap::PolygonMap(const Mesh& mesh, std::vector<Index>& sources, std::vecto
     next_[h] = twin(g);
     prev_[twin(g)] = h;
   }
+
   // Vertices: one for each cycle of halfedges that leave it, in the order of the mesh's.
   origin_.assign(next_.size(), no_index);
   sources.clear();
   for (Index v = 0; v < mesh.positions.size(); ++v) {
-    for (const Index f : around_vertex[v]) {
-      const auto face = faces[f];
-      for (std::size_t k = 0; k < face.size(); ++k) {
-        const Index start = halfedge_of[faces.first(f) + k];
-        if (face[k] != v || origin_[start] != no_index) continue;
-        const auto id = static_cast<Index>(leaving_.size());
-        leaving_.push_back(start);
-        sources.push_back(v);
-        Index h = start;
-        do {
-          origin_[h] = id;
-          h = around(h);
-        } while (h != start);
-      }
+    for (const auto& edge : edges[v]) {
+      const Index start = halfedge_of[edge.corner];
+      if (origin_[start] != no_index) continue;
+      const auto id = static_cast<Index>(leaving_.size());
+      leaving_.push_back(start);
+      sources.push_back(v);
+      Index h = start;
+      do {
+        origin_[h] = id;
+        h = around(h);
+      } while (h != start);
     }
   }
 }
