@@ -88,23 +88,22 @@ TEST(BucketQueue, StartsAnewWhenCleared) {
   EXPECT_EQ(pop_all(queue), (std::vector<std::uint32_t>{1, 2}));
 }
 
-/// Of one bucket exactly, as long as nothing is pushed; else whatever is there.
-TEST(BucketQueue, LooksAhead) {
+TEST(BucketQueue, BucketsAreTakenWhole) {
   BucketQueue queue(width);
-  for (std::uint32_t i = 0; i < 6; ++i) queue.push(0.1f + 0.01f * static_cast<float>(i), i);
+  for (std::uint32_t i = 0; i < 6; ++i) queue.push(0.1f + 0.05f * static_cast<float>(i), i);
   queue.push(20, 6);
-  std::vector<std::uint32_t> seen;
-  ASSERT_TRUE(queue.find());
-  for (std::size_t k = 0; k < 6; ++k) seen.push_back(queue.ahead(k));
-  EXPECT_EQ(queue.ahead(6), seen.back());
-  EXPECT_EQ(queue.ahead(100), seen.back());
-  for (std::size_t k = 0; k < 6; ++k) {
-    ASSERT_TRUE(queue.find());
-    EXPECT_EQ(queue.ahead(0), seen[k]);
-    EXPECT_EQ(queue.pop().item, seen[k]);
-  }
-  ASSERT_TRUE(queue.find());
-  EXPECT_EQ(queue.ahead(3), 6u);
+  std::vector<BucketQueue::Entry> bucket;
+  ASSERT_TRUE(queue.take_bucket(bucket));
+  EXPECT_EQ(bucket.size(), 6u);
+  queue.push(0.2f, 7);  // comes back to the bucket
+  ASSERT_TRUE(queue.take_bucket(bucket));
+  ASSERT_EQ(bucket.size(), 1u);
+  EXPECT_EQ(bucket[0].item, 7u);
+  ASSERT_TRUE(queue.take_bucket(bucket));
+  ASSERT_EQ(bucket.size(), 1u);
+  EXPECT_EQ(bucket[0].item, 6u);
+  EXPECT_FALSE(queue.take_bucket(bucket));
+  EXPECT_TRUE(bucket.empty());
 }
 
 }  // namespace

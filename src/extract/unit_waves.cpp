@@ -3,6 +3,8 @@
 #include <hwy/cache_control.h>
 
 #include <algorithm>
+#include <array>
+#include <numeric>
 #include <utility>
 
 #include "util/sort_unique.h"
@@ -74,34 +76,53 @@ bool UnitWaves::is_nearest(const Meeting& meeting) {
 
 void UnitWaves::grow(std::vector<Meeting>& meetings, const Context& context) {
   for (const std::uint32_t number : std::exchange(forgotten_, {})) come_back_to(number);
-  for (std::size_t done = 1; queue_.find(); ++done) {
-    if ((done & 0xffff) == 0) context.check();
-    get_ready();
-    const auto [cost, number] = queue_.pop();
-    const Label& label = labels_[number];
-    if (cost != label.cost) continue;  // another has come, or it was forgotten
-    const State in = carrier_.state(number);
-    const std::uint32_t wave = label.wave();
-    meet(in, meetings);
-    if (wave_[UnitCarrier::triangle(in)] == wave || carrier_.gain(in)) continue;
-    const auto costs = carrier_.passing(in);
-    State out = in;
-    for (std::size_t side = 0; side < 2; ++side) {
-      out = carrier_.along(out);
-      visit(cost + costs[side], carrier_.across(out), side == 0 ? previous_edge : edge_before,
-            wave);
+  while (queue_.take_bucket(batch_)) {
+    context.check();
+    sort_by_place();
+    for (std::size_t k = 0; k < batch_.size(); ++k) {
+      get_ready(k);
+      const auto [cost, number] = batch_[k];
+      if (cost == labels_[number].cost) go_on(number, meetings);  // else another has come since
     }
   }
   queue_.clear();
   meet_at_contacts(meetings);
 }
 
+void UnitWaves::go_on(std::uint32_t number, std::vector<Meeting>& meetings) {
+  const State in = carrier_.state(number);
+  const auto [cost, packed] = labels_[number];
+  const std::uint32_t wave = labels_[number].wave();
+  meet(in, meetings);
+  if (wave_[UnitCarrier::triangle(in)] == wave || carrier_.gain(in)) return;
+  const auto costs = carrier_.passing(in);
+  State out = in;
+  for (std::size_t side = 0; side < 2; ++side) {
+    out = carrier_.along(out);
+    visit(cost + costs[side], carrier_.across(out), side == 0 ? previous_edge : edge_before, wave);
+  }
+}
+
+/// Roughly in the order of the states in memory, so that what is beside each other finds the same
+/// lines in the cache.
+void UnitWaves::sort_by_place() {
+  constexpr std::uint32_t places = 512;
+  const std::size_t width = labels_.size() / places + 1;
+  std::array<std::uint32_t, places + 1> starts{};
+  for (const auto& entry : batch_) ++starts[entry.item / width + 1];
+  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  sorted_.resize(batch_.size());
+  for (const auto& entry : batch_) sorted_[starts[entry.item / width]++] = entry;
+  batch_.swap(sorted_);
+}
+
 /// Waves jump about in memory: fetches what will be looked at in a few steps.
-void UnitWaves::get_ready() const {
-  const std::uint32_t later = queue_.ahead(8);
+void UnitWaves::get_ready(std::size_t place) const {
+  if (place + 8 >= batch_.size()) return;
+  const std::uint32_t later = batch_[place + 8].item;
   hwy::Prefetch(&labels_[later]);
   carrier_.prefetch(carrier_.state(later));
-  const State soon = carrier_.state(queue_.ahead(4));
+  const State soon = carrier_.state(batch_[place + 4].item);
   const State next = carrier_.along(soon), last = carrier_.along(next);
   for (const State& out : {carrier_.opposite(soon), next, last}) {
     hwy::Prefetch(&labels_[carrier_.number(carrier_.across(out))]);

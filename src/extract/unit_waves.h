@@ -65,6 +65,7 @@ class UnitWaves {
 
  private:
   enum Origin : std::uint32_t { previous_edge, edge_before, nowhere };
+  static constexpr float bucket = 0.5f;  // of costs that are looked at together
   static constexpr float never = std::numeric_limits<float>::infinity();
 
   struct Label {
@@ -78,7 +79,9 @@ class UnitWaves {
     Origin origin() const { return static_cast<Origin>(packed % 4); }
   };
 
-  void get_ready() const;
+  void sort_by_place();
+  void get_ready(std::size_t place) const;
+  void go_on(std::uint32_t number, std::vector<Meeting>& meetings);
   void meet(const State& in, std::vector<Meeting>& meetings);
   void meet_at_contacts(std::vector<Meeting>& meetings);
   bool is_nearest(const Meeting& meeting);
@@ -101,7 +104,8 @@ class UnitWaves {
   std::vector<std::vector<std::uint32_t>> contacts_;
   std::vector<std::uint32_t> unmet_;              // waves that must look at their contacts again
   std::vector<BucketQueue::Entry> beyond_reach_;  // states
-  BucketQueue queue_{UnitCarrier::least_step};
+  BucketQueue queue_{bucket};
+  std::vector<BucketQueue::Entry> batch_, sorted_;
 };
 
 }  // namespace meshgrain

@@ -54,10 +54,12 @@ class BucketQueue {
     buckets_[lowest_].pop_back();
     return entry;
   }
-  /// What will most likely be popped `steps` later, to get it ready; or else something else.
-  std::uint32_t ahead(std::size_t steps) const {
-    const std::vector<Entry>& bucket = buckets_[lowest_];
-    return bucket[bucket.size() - 1 - std::min(steps, bucket.size() - 1)].item;
+  /// Takes all that is in the next bucket. Returns whether there was anything.
+  bool take_bucket(std::vector<Entry>& entries) {
+    entries.clear();
+    if (!find()) return false;
+    entries.swap(buckets_[lowest_]);
+    return true;
   }
 
  private:
