@@ -4,6 +4,7 @@
 
 #include <numeric>
 
+#include "extract/add_strips.h"
 #include "extract/collect_faces.h"
 #include "extract/drop_unused.h"
 #include "extract/extraction_map.h"
@@ -363,16 +364,15 @@ TEST(FaceRepair, QuadsCloseWithoutAChangeOfTopologyOrBorder) {
   }
 }
 
-/// However many strips go that end at it.
-TEST(RemoveStrips, AHoleOfAFewEdgesStaysOpen) {
-  constexpr Index n = 5;
+/// n times n squares, without the one in the middle.
+Extraction grid_with_a_hole(Index n) {
   Extraction extraction;
   for (Index y = 0; y <= n; ++y) {
     for (Index x = 0; x <= n; ++x) {
       extraction.mesh.positions.push_back({static_cast<float>(x), static_cast<float>(y), 0});
     }
   }
-  const auto at = [](Index x, Index y) { return y * (n + 1) + x; };
+  const auto at = [n](Index x, Index y) { return y * (n + 1) + x; };
   for (Index y = 0; y < n; ++y) {
     for (Index x = 0; x < n; ++x) {
       if (x == n / 2 && y == n / 2) continue;
@@ -381,9 +381,40 @@ TEST(RemoveStrips, AHoleOfAFewEdgesStaysOpen) {
   }
   extraction.nodes.resize(extraction.mesh.positions.size());
   std::iota(extraction.nodes.begin(), extraction.nodes.end(), Index{0});
+  return extraction;
+}
+
+/// However many strips go that end at it.
+TEST(RemoveStrips, AHoleOfAFewEdgesStaysOpen) {
+  Extraction extraction = grid_with_a_hole(5);
   const MeshStatistics before = mesh_statistics(extraction.mesh);
   EXPECT_GT(remove_strips(extraction, 100, 100, Context()), 0u);
   made::expect_same_topology(mesh_statistics(extraction.mesh), before);
+}
+
+TEST(AddStrips, AGridStaysAGrid) {
+  constexpr Index n = 7;
+  Extraction extraction = grid_with_a_hole(n);
+  for (Index x = 0; x < n; ++x) extraction.line_edges.push_back({x, x + 1, 0});  // a rim
+  const MeshStatistics before = mesh_statistics(extraction.mesh);
+  // Strips have 7 faces, those that end at the hole 3.
+  EXPECT_EQ(add_strips(extraction, 4, 7, Context()), 7u);
+  EXPECT_EQ(add_strips(extraction, 1, 2, Context()), 0u);
+  EXPECT_EQ(extraction.mesh.faces.size(), n * n - 1 + 7);
+  EXPECT_EQ(extraction.mesh.faces.uniform_degree(), 4u);
+  EXPECT_EQ(extraction.nodes.size(), extraction.mesh.positions.size());
+  const MeshStatistics after = mesh_statistics(extraction.mesh);
+  made::expect_same_topology(after, before);
+  EXPECT_EQ(after.irregular_vertices, before.irregular_vertices);
+  EXPECT_EQ(after.inverted_quads, 0u);
+  EXPECT_NEAR(surface_area(extraction.mesh), n * n - 1, 1e-3);
+  // The rim is a chain still.
+  double length = 0;
+  for (const auto& [a, b, line] : extraction.line_edges) {
+    length += (extraction.mesh.positions[a] - extraction.mesh.positions[b]).norm();
+  }
+  EXPECT_NEAR(length, n, 1e-4);
+  EXPECT_GE(extraction.line_edges.size(), n);
 }
 
 /// A trapezohedron: two poles with eight quads each, and between them only vertices with three.

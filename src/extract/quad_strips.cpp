@@ -1,6 +1,7 @@
 #include "extract/quad_strips.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -76,9 +77,12 @@ QuadStrip QuadStrips::follow(Index start) const {
   };
   strip.rungs.push_back(start);
   if (!walk(start)) walk(opposite_[start]);
+  strip.narrowest = std::numeric_limits<float>::infinity();
   for (const Index rung : strip.rungs) {
     const auto [a, b] = ends(rung);
-    strip.width += (mesh_.positions[a] - mesh_.positions[b]).norm();
+    const float length = (mesh_.positions[a] - mesh_.positions[b]).norm();
+    strip.width += length;
+    strip.narrowest = std::min(strip.narrowest, length);
   }
   strip.width /= static_cast<float>(strip.rungs.size());
   return strip;

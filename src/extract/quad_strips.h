@@ -14,6 +14,7 @@ struct QuadStrip {
   std::vector<Index> faces;
   std::vector<Index> rungs;  // the corner (place in Faces::corners()) where each edge starts
   float width = 0;           // mean length of a rung
+  float narrowest = 0;       // the least one
 };
 
 /// The strips of a mesh of quads.

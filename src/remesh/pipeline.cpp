@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "border/lock_borders.h"
+#include "extract/add_strips.h"
 #include "extract/reduce_faces.h"
 #include "extract/remove_strips.h"
 #include "features/lines_abreast.h"
@@ -27,6 +28,9 @@
 
 namespace meshgrain {
 namespace {
+
+/// How far a count may be off after strips have gone or come, which are long: all that may be.
+constexpr double strip_tolerance = 0.0099;
 
 /// Pairs of neighbouring faces that both touch the border.
 std::vector<std::array<Index, 2>> border_of_faces(const Mesh& surface, const Graph& graph) {
@@ -231,6 +235,7 @@ double Pipeline::surplus() const {
 }
 
 double Pipeline::count_to_aim_at() const {
+  if (options_.faces == OutputFaces::quads) return 1;  // strips can come as well as go
   return 1 + (surplus() - target_.tolerance()) / 2;
 }
 
@@ -335,10 +340,10 @@ void Pipeline::find_faces() {
     if (!target_.must_be_met()) drop_coarse_levels();
     Extraction found = stage_("extraction", [&] { return extract(positions); });
     const double ratio = target_.count_ratio(found.mesh);
-    // A few faces too many can be taken away, but not added.
     const double closing = attempt < 3 ? surplus() : std::max(surplus(), 0.03);
     const bool met = std::abs(ratio - 1) < tolerance ||
-                     (ratio > 1 && ratio < 1 + closing && !given && take_faces_away(found));
+                     (ratio > 1 && ratio < 1 + closing && !given && take_faces_away(found)) ||
+                     (ratio < 1 && ratio > 1 - surplus() && !given && add_faces(found));
     const double error = met ? 0 : ratio < 1 ? 1 / ratio - 1 : (ratio - 1) / 5;
     if (error < least_error) {
       least_error = error;
@@ -372,20 +377,35 @@ bool Pipeline::take_faces_away(Extraction& extraction) {
   });
 }
 
+bool Pipeline::add_faces(Extraction& extraction) {
+  if (options_.faces != OutputFaces::quads) return false;
+  return stage_("extraction", [&] {
+    Extraction quads = extraction;
+    if (lattice_faces_ == OutputFaces::quads) split(quads);
+    const auto count = static_cast<double>(quads.mesh.faces.size());
+    const double wanted = count / target_.count_ratio(extraction.mesh);
+    const auto least = static_cast<std::size_t>(std::ceil((1 - strip_tolerance) * wanted - count));
+    const auto most = static_cast<std::size_t>((1 + strip_tolerance) * wanted - count);
+    if (add_strips(quads, least, most, context_) < least) return false;
+    extraction = std::move(quads);
+    is_split_ = true;
+    return true;
+  });
+}
+
 bool Pipeline::take_strips(Extraction& extraction) {
   if (options_.faces != OutputFaces::quads) return false;
   Extraction quads = extraction;
   if (lattice_faces_ == OutputFaces::quads) split(quads);
   const auto count = static_cast<double>(quads.mesh.faces.size());
   const double wanted = count / target_.count_ratio(extraction.mesh);
-  constexpr double one_percent = 0.0099;  // strips are long: all that may be
-  const auto least = static_cast<std::size_t>(std::ceil(count - (1 + one_percent) * wanted));
-  const auto most = static_cast<std::size_t>(count - (1 - one_percent) * wanted);
+  const auto least = static_cast<std::size_t>(std::ceil(count - (1 + strip_tolerance) * wanted));
+  const auto most = static_cast<std::size_t>(count - (1 - strip_tolerance) * wanted);
   const std::size_t gone = remove_strips(quads, least, most, context_);
   if (gone < least) {
     // Single quads for the rest, if these are fewer than the larger ones from before the split.
     const std::size_t rest = least - gone;
-    if (rest > target_.faces_to_close(extraction.mesh, one_percent)) return false;
+    if (rest > target_.faces_to_close(extraction.mesh, strip_tolerance)) return false;
     if (reduce_faces(quads, posy_of(options_.faces), rest, context_) < rest) return false;
   }
   extraction = std::move(quads);

@@ -67,6 +67,9 @@ class Pipeline {
  private:
   /// Takes faces away until there are no more than wanted. Returns whether that came to be.
   bool take_faces_away(Extraction& extraction);
+  /// Adds strips of quads until there are as many faces as wanted. Returns whether that came to be;
+  /// what is left is split then, else as it was.
+  bool add_faces(Extraction& extraction);
   /// Strips of quads, and single ones for the rest. Returns whether that is better than fewer of
   /// the larger quads: what is left is split then, else as it was.
   bool take_strips(Extraction& extraction);
