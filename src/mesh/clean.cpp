@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <tuple>
@@ -10,15 +11,18 @@
 
 #include "mesh/duplicates.h"
 #include "mesh/marks.h"
-#include "mesh/vertex_faces.h"
+#include "mesh/sort_by_vertex.h"
 #include "meshgrain/surface.h"
 #include "util/collect.h"
 #include "util/edge_of.h"
 #include "util/sort_unique.h"
+#include "util/sum.h"
 #include "util/union_find.h"
 
 namespace meshgrain {
 namespace {
+
+constexpr std::size_t grain = 1 << 16;
 
 bool repeats_a_vertex(std::span<const Index> face, std::vector<Index>& scratch) {
   if (face.size() == 3) return false;
@@ -32,11 +36,13 @@ std::size_t lowest_corner(std::span<const Index> face) {
 }
 
 /// What all rotations of a face have in common, in both directions, besides the lowest corner: the
-/// two beside it, and their number. Of triangles that is all.
-std::array<Index, 3> key_of(std::span<const Index> face) {
+/// two beside it. Of triangles that is all.
+template <typename Face>
+std::array<Index, 2> key_of(const Face& face) {
   const std::size_t n = face.size(), low = lowest_corner(face);
-  const auto [beside, other] = std::minmax(face[(low + 1) % n], face[(low + n - 1) % n]);
-  return {beside, other, static_cast<Index>(n)};
+  const auto [beside, other] =
+      std::minmax(face[low + 1 == n ? 0 : low + 1], face[low == 0 ? n - 1 : low - 1]);
+  return {beside, other};
 }
 
 /// The corners of a face from the lowest on, towards the lower of its two neighbours.
@@ -49,25 +55,44 @@ std::vector<Index> canonical(std::span<const Index> face) {
   return result;
 }
 
+/// A face under what it shares with its duplicates.
+struct Keyed {
+  std::array<Index, 2> key;
+  Index face;
+  auto operator<=>(const Keyed&) const = default;
+};
+
+bool all_differ(std::span<const Keyed> faces) {
+  for (std::size_t k = 1; k < faces.size(); ++k) {
+    for (std::size_t earlier = 0; earlier < k; ++earlier) {
+      const auto &a = faces[k].key, &b = faces[earlier].key;
+      if (a[0] == b[0] && a[1] == b[1]) return false;
+    }
+  }
+  return true;
+}
+
 /// The faces that have the corners of an earlier one.
 std::vector<Index> find_duplicates(const Faces& faces, std::size_t vertices,
                                    const Context& context) {
-  // Those with the same lowest corner are next to each other, without a sort of them all.
-  const VertexFaces sorted = faces_by_lowest_vertex(faces, vertices, context);
-  struct Keyed {
-    std::array<Index, 3> key;
-    Index face;
-    bool operator<(const Keyed& o) const { return std::tie(key, face) < std::tie(o.key, o.face); }
-  };
+  // Those with the same lowest corner come to lie next to each other, without a sort of them all.
+  std::vector<Keyed> keyed(faces.size());
+  const std::vector<Index> offsets = with_corners(faces, [&](const auto& corners) {
+    const auto put = [&](std::size_t f, Index place) {
+      keyed[place] = {key_of(corners(f)), static_cast<Index>(f)};
+    };
+    return sort_by_lowest_vertex(faces, vertices, put, context);
+  });
   const auto duplicates_around = [&](std::size_t first, std::size_t last, std::vector<Index>& out) {
-    std::vector<Keyed> same;
+    constexpr std::size_t few = 8;
     for (std::size_t v = first; v < last; ++v) {
-      same.clear();
-      for (const Index f : sorted[v]) same.push_back({key_of(faces[f]), f});
-      std::sort(same.begin(), same.end());
-      for (std::size_t k = 1; k < same.size(); ++k) {
-        for (std::size_t earlier = k; earlier-- > 0 && same[earlier].key == same[k].key;) {
-          const Index f = same[k].face, g = same[earlier].face;
+      const std::span<Keyed> here(&keyed[0] + offsets[v], offsets[v + 1] - offsets[v]);
+      if (here.size() <= few && all_differ(here)) continue;
+      std::sort(here.begin(), here.end());
+      for (std::size_t k = 1; k < here.size(); ++k) {
+        for (std::size_t earlier = k; earlier-- > 0 && here[earlier].key == here[k].key;) {
+          const Index f = here[k].face, g = here[earlier].face;
+          if (faces.degree(f) != faces.degree(g)) continue;
           if (faces.degree(f) > 3 && canonical(faces[f]) != canonical(faces[g])) continue;
           out.push_back(f);
           break;
@@ -112,10 +137,8 @@ void drop_repeats(std::vector<Index>& face) {
 
 /// Drops repeated corners, and faces without three different ones. A face that comes to a vertex
 /// twice on different ways stays: so polygons with holes are written.
-void drop_repeated_corners(Mesh& mesh, CleanReport& report) {
-  std::vector<Index> face, scratch;
-  const auto is_good = [&](std::size_t f) {
-    const auto corners = std::as_const(mesh.faces)[f];
+void drop_repeated_corners(Mesh& mesh, CleanReport& report, const Context& context) {
+  const auto is_good = [&](std::span<const Index> corners, std::vector<Index>& scratch) {
     if (corners.size() < 3) return false;
     Index last = corners.back();
     for (const Index v : corners) {
@@ -123,14 +146,22 @@ void drop_repeated_corners(Mesh& mesh, CleanReport& report) {
     }
     return !repeats_a_vertex(corners, scratch);
   };
-  std::size_t f = 0;
-  while (f < mesh.faces.size() && is_good(f)) ++f;
-  if (f == mesh.faces.size()) return;
+  const std::size_t good_faces = with_corners(mesh.faces, [&](const auto& corners) {
+    const auto count_good = [&](std::size_t begin, std::size_t end) {
+      std::vector<Index> scratch;
+      std::size_t count = 0;
+      for (std::size_t f = begin; f < end; ++f) count += is_good(corners(f), scratch);
+      return count;
+    };
+    return sum_over_ranges(mesh.faces.size(), count_good, context);
+  });
+  if (good_faces == mesh.faces.size()) return;
+  std::vector<Index> face, scratch;
   Faces faces;
   faces.reserve(mesh.faces.size(), mesh.faces.corners().size());
-  for (f = 0; f < mesh.faces.size(); ++f) {
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     face.assign(std::as_const(mesh.faces)[f].begin(), std::as_const(mesh.faces)[f].end());
-    const bool good = is_good(f);
+    const bool good = is_good(face, scratch);
     if (!good) drop_repeats(face);
     report.repeated_corners += mesh.faces.degree(f) - face.size();
     if (face.size() < 3 || (!good && repeats_an_edge(face))) {
@@ -171,25 +202,35 @@ std::size_t drop_loose_marks(Mesh& mesh) {
   return marks.size() - mesh.marked_edges.size();
 }
 
+/// Flags of the vertices that faces have.
+std::vector<std::uint8_t> used_vertices(const Mesh& mesh, const Context& context) {
+  std::vector<std::uint8_t> is_used(mesh.positions.size(), 0);
+  const std::span<const Index> corners = mesh.faces.corners();
+  context.for_ranges(corners.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      std::atomic_ref(is_used[corners[c]]).store(1, std::memory_order_relaxed);
+    }
+  });
+  return is_used;
+}
+
 /// Returns their number.
-std::size_t drop_unused_vertices(Mesh& mesh) {
-  std::vector<Index> number(mesh.positions.size(), no_index);
-  for (const Index v : mesh.faces.corners()) number[v] = 0;
-  std::vector<Index> kept;
+std::size_t drop_unused_vertices(Mesh& mesh, const Context& context) {
+  const std::vector<std::uint8_t> is_used = used_vertices(mesh, context);
+  const auto unused = static_cast<std::size_t>(std::ranges::count(is_used, 0));
+  if (unused == 0) return 0;
+  std::vector<Index> number(is_used.size(), no_index), kept;
   for (std::size_t v = 0; v < number.size(); ++v) {
-    if (number[v] == no_index) continue;
+    if (!is_used[v]) continue;
     number[v] = static_cast<Index>(kept.size());
     kept.push_back(static_cast<Index>(v));
   }
-  const std::size_t dropped = number.size() - kept.size();
-  if (dropped > 0) {
-    for (Index& v : mesh.faces.corners()) v = number[v];
-    for (auto& edge : mesh.marked_edges) edge = {number[edge[0]], number[edge[1]]};
-    std::erase_if(mesh.marked_edges,
-                  [](const auto& edge) { return edge[0] == no_index || edge[1] == no_index; });
-    keep_vertices(mesh, kept);
-  }
-  return dropped;
+  for (Index& v : mesh.faces.corners()) v = number[v];
+  for (auto& edge : mesh.marked_edges) edge = {number[edge[0]], number[edge[1]]};
+  std::erase_if(mesh.marked_edges,
+                [](const auto& edge) { return edge[0] == no_index || edge[1] == no_index; });
+  keep_vertices(mesh, kept);
+  return unused;
 }
 
 }  // namespace
@@ -204,7 +245,7 @@ CleanReport clean(Mesh& mesh, const Context& context) {
     return report;
   }
 
-  drop_repeated_corners(mesh, report);
+  drop_repeated_corners(mesh, report, context);
   const auto duplicates = find_duplicates(mesh.faces, mesh.positions.size(), context);
   report.duplicate_faces = duplicates.size();
   if (!duplicates.empty()) {
@@ -216,7 +257,7 @@ CleanReport clean(Mesh& mesh, const Context& context) {
     }
   }
   report.loose_marks = drop_loose_marks(mesh);
-  report.unused_vertices = drop_unused_vertices(mesh);
+  report.unused_vertices = drop_unused_vertices(mesh, context);
   return report;
 }
 
@@ -243,7 +284,7 @@ std::size_t drop_small_pieces(Mesh& mesh, double least_area) {
     }
   }
   mesh.faces = std::move(kept);
-  drop_unused_vertices(mesh);
+  drop_unused_vertices(mesh, Context(1));
   return static_cast<std::size_t>(std::count(dropped.begin(), dropped.end(), 1));
 }
 

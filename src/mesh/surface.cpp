@@ -5,57 +5,67 @@
 #include <span>
 #include <utility>
 
-#include "mesh/vertex_faces.h"
+#include "mesh/sort_by_vertex.h"
+#include "mesh/surface_size.h"
 #include "util/hilbert.h"
 #include "util/sum.h"
 
 namespace meshgrain {
 
-double face_area(const Mesh& mesh, std::size_t f) {
-  const auto face = mesh.faces[f];
-  const Vec3& a = mesh.positions[face[0]];
+namespace {
+
+template <typename Face>
+double fan_area(const std::vector<Vec3>& positions, const Face& face) {
+  const Vec3& a = positions[face[0]];
   double area = 0;
   for (std::size_t k = 2; k < face.size(); ++k) {
-    area += 0.5 * (mesh.positions[face[k - 1]] - a).cross(mesh.positions[face[k]] - a).norm();
+    area += 0.5 * (positions[face[k - 1]] - a).cross(positions[face[k]] - a).norm();
   }
   return area;
 }
 
+}  // namespace
+
+double face_area(const Mesh& mesh, std::size_t f) {
+  return fan_area(mesh.positions, mesh.faces[f]);
+}
+
+SurfaceSize surface_size(const Mesh& mesh, const Context& context) {
+  struct Sums {
+    double area = 0, length = 0, longest = 0;
+    Sums operator+(const Sums& o) const {
+      return {area + o.area, length + o.length, std::max(longest, o.longest)};
+    }
+  };
+  const Sums sums = with_corners(mesh.faces, [&](const auto& corners) {
+    const auto measure = [&](std::size_t begin, std::size_t end) {
+      Sums here;
+      for (std::size_t f = begin; f < end; ++f) {
+        const auto face = corners(f);
+        if (face.empty()) continue;
+        Index last = face.back();
+        for (const Index v : face) {
+          const double length = (mesh.positions[v] - mesh.positions[last]).norm();
+          here.length += length;
+          here.longest = std::max(here.longest, length);
+          last = v;
+        }
+        here.area += fan_area(mesh.positions, face);
+      }
+      return here;
+    };
+    return sum_over_ranges(mesh.faces.size(), measure, context);
+  });
+  const auto sides = static_cast<double>(std::max<std::size_t>(1, mesh.faces.corners().size()));
+  return {sums.area, {sums.length / sides, sums.longest}};
+}
+
 double surface_area(const Mesh& mesh, const Context& context) {
-  return sum_over_ranges(
-      mesh.faces.size(),
-      [&](std::size_t begin, std::size_t end) {
-        double area = 0;
-        for (std::size_t f = begin; f < end; ++f) area += face_area(mesh, f);
-        return area;
-      },
-      context);
+  return surface_size(mesh, context).area;
 }
 
 EdgeLengths edge_lengths(const Mesh& mesh, const Context& context) {
-  struct Lengths {
-    double sum = 0, max = 0;
-    Lengths operator+(const Lengths& o) const { return {sum + o.sum, std::max(max, o.max)}; }
-  };
-  const auto lengths = sum_over_ranges(
-      mesh.faces.size(),
-      [&](std::size_t begin, std::size_t end) {
-        Lengths result;
-        for (std::size_t f = begin; f < end; ++f) {
-          const auto face = mesh.faces[f];
-          if (face.empty()) continue;
-          Index last = face.back();
-          for (const Index v : face) {
-            const double length = (mesh.positions[v] - mesh.positions[last]).norm();
-            result = result + Lengths{length, length};
-            last = v;
-          }
-        }
-        return result;
-      },
-      context);
-  const auto sides = static_cast<double>(std::max<std::size_t>(1, mesh.faces.corners().size()));
-  return {lengths.sum / sides, lengths.max};
+  return surface_size(mesh, context).edges;
 }
 
 namespace {
@@ -74,17 +84,22 @@ void permute(std::vector<T>& values, const std::vector<Index>& order, const Cont
 
 /// Sorts faces by their first vertex, those with the same one in the order that they had.
 void sort_faces(Faces& faces, std::size_t vertices, const Context& context) {
-  const std::vector<Index> order = faces_by_lowest_vertex(faces, vertices, context).faces;
   Faces sorted;
   if (const std::size_t degree = faces.uniform_degree(); degree > 0) {
     sorted = Faces::uniform(faces.size(), degree);
-    context.for_ranges(faces.size(), grain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) {
-        std::ranges::copy(std::as_const(faces)[order[k]], sorted[k].begin());
-      }
-    });
+    const Index* const from = std::as_const(faces).corners().data();
+    Index* const to = sorted.corners().data();
+    const auto put = [&](std::size_t f, std::size_t place) {
+      std::copy_n(from + degree * f, degree, to + degree * place);
+    };
+    sort_by_lowest_vertex(faces, vertices, put, context);
   } else {
     sorted.reserve(faces.size(), faces.corners().size());
+    std::vector<Index> order(faces.size());
+    const auto put = [&](std::size_t f, std::size_t place) {
+      order[place] = static_cast<Index>(f);
+    };
+    sort_by_lowest_vertex(faces, vertices, put, context);
     for (const Index f : order) sorted.push_back(std::as_const(faces)[f]);
   }
   faces = std::move(sorted);
@@ -99,7 +114,9 @@ std::vector<Index> sort_along_curve(Mesh& mesh, const Context& context) {
   permute(mesh.values, order, context);
 
   std::vector<Index> rank(order.size());
-  for (std::size_t k = 0; k < order.size(); ++k) rank[order[k]] = static_cast<Index>(k);
+  context.for_ranges(order.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) rank[order[k]] = static_cast<Index>(k);
+  });
   const std::span<Index> corners = mesh.faces.corners();
   context.for_ranges(corners.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) corners[c] = rank[corners[c]];

@@ -29,8 +29,4 @@ std::vector<Index> vertices_of(const Mesh& mesh, std::span<const Index> faces);
 std::vector<Index> with_rings(const Mesh& mesh, const VertexFaces& around, std::vector<Index> faces,
                               int rings);
 
-/// Each face once, at the lowest of its vertices.
-VertexFaces faces_by_lowest_vertex(const Faces& faces, std::size_t vertices,
-                                   const Context& context);
-
 }  // namespace meshgrain

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <functional>
 
+#include "mesh/surface_size.h"
 #include "meshgrain/error.h"
-#include "meshgrain/surface.h"
 #include "remesh/target.h"
 #include "util/sum.h"
 
@@ -60,17 +60,16 @@ double triangles_within(const Mesh& mesh, double limit, const Context& context) 
 }
 
 /// By how many triangles the mesh grows that the fields live on.
-double added_triangles(const Mesh& input, double triangles, double area, const Target& target,
-                       const RemeshOptions& options, const Context& context) {
-  const double mean = edge_lengths(input, context).mean;
-  const double limit = target.longest_input_edge(options, area, mean);
+double added_triangles(const Mesh& input, double triangles, const SurfaceSize& size,
+                       const Target& target, const RemeshOptions& options, const Context& context) {
+  const double limit = target.longest_input_edge(options, size.area, size.edges.mean);
   if (!(limit > 0)) return 0;
   const double added = std::max(0.0, triangles_within(input, limit, context) - triangles);
   // Later on only those are split where small faces are wanted.
   constexpr double triangles_in_cell = 6;
-  const double length = target.edge_length(area);
+  const double length = target.edge_length(size.area);
   const bool again = !options.sizing.is_uniform() && !splits_only_once(options);
-  return again ? added + triangles_in_cell * area / (length * length) : added;
+  return again ? added + triangles_in_cell * size.area / (length * length) : added;
 }
 
 double bytes_of_written_face(const RemeshOptions& options) {
@@ -95,12 +94,13 @@ Need needed_by_cloud(const Mesh& input, const RemeshOptions& options, const Targ
 
 Need needed_by_mesh(const Mesh& input, const RemeshOptions& options, const Target& target,
                     const Context& context) {
-  const double area = surface_area(input, context);
+  const SurfaceSize size = surface_size(input, context);
+  const double area = size.area;
   if (!(area > 0)) return {};
   const auto vertices = static_cast<double>(input.positions.size());
   const double triangles = static_cast<double>(input.faces.corners().size()) -
                            2 * static_cast<double>(input.faces.size());
-  const double added = added_triangles(input, triangles, area, target, options, context);
+  const double added = added_triangles(input, triangles, size, target, options, context);
   const double written = area / target.face_area(area) * bytes_of_written_face(options);
   // Two triangles come with each vertex that is put between others.
   if (options.graph.nodes == GraphNodes::vertices) {

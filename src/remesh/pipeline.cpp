@@ -83,27 +83,25 @@ void Pipeline::clean_up(Mesh input) {
 void Pipeline::sharpen() {
   if (is_cloud_) return;
   stage_("noise", [&] {
-    const double side = target_.face_side(surface_area(surface_, context_));
+    input_size_ = surface_size(surface_, context_);
+    const double side = target_.face_side(input_size_.area);
     is_sharpened_ = take_out_noise(surface_, options_, side, result_.report.notes, context_);
+    if (is_sharpened_) input_size_ = surface_size(surface_, context_);
   });
   if (options_.lock_borders) locked_ = border_vertices(surface_, context_);
 }
 
 void Pipeline::refine() {
   if (!is_cloud_) {
-    const double area = stage_("subdivide", [&] {
-      const double whole = surface_area(surface_, context_);
-      if (!(whole > 0)) throw Error("the input has no surface: all of its faces are degenerate");
-      split_long_edges(whole);
-      return whole;
-    });
+    const double area = input_size_.area;
+    if (!(area > 0)) throw Error("the input has no surface: all of its faces are degenerate");
+    stage_("subdivide", [&] { split_long_edges(area, input_size_.edges); });
     lay_guides(target_.edge_length(area));
   }
   stage_("order", [&] { put_in_order(); });
 }
 
-bool Pipeline::split_long_edges(double area) {
-  const EdgeLengths edges = edge_lengths(surface_, context_);
+bool Pipeline::split_long_edges(double area, const EdgeLengths& edges) {
   const double limit = target_.longest_input_edge(options_, area, edges.mean);
   if (!(edges.max > limit)) return false;
   refine_slivers(surface_, limit, context_);
@@ -201,7 +199,9 @@ bool Pipeline::choose_lattice() {
 
 void Pipeline::refine_for_details() {
   if (!choose_lattice()) return;
-  if (!stage_("subdivide", [&] { return split_long_edges(area_); })) return;
+  const bool any_split = stage_(
+      "subdivide", [&] { return split_long_edges(area_, edge_lengths(surface_, context_)); });
+  if (!any_split) return;
   stage_("order", [&] { put_in_order(); });
   build_graph();
   find_lines();

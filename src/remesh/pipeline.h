@@ -7,6 +7,7 @@
 #include "features/find_features.h"
 #include "features/guide_constraints.h"
 #include "mesh/frame.h"
+#include "mesh/surface_size.h"
 #include "meshgrain/extract.h"
 #include "meshgrain/hierarchy.h"
 #include "meshgrain/remesh.h"
@@ -83,7 +84,7 @@ class Pipeline {
   /// Returns whether the lattice is finer now.
   bool choose_lattice();
   /// Those longer than the target allows. Returns whether there are any.
-  bool split_long_edges(double area);
+  bool split_long_edges(double area, const EdgeLengths& edges);
 
   /// Guides onto the surface: those that edges must follow are cut into it.
   void lay_guides(double edge_length);
@@ -134,6 +135,7 @@ class Pipeline {
   RemeshOptions wanted_;         // what the target goes by
   bool is_sharpened_ = false;
   Mesh surface_;
+  SurfaceSize input_size_{};  // of the surface before it is refined
   Hierarchy hierarchy_;
   double area_ = 0;
   EdgeLength lengths_;
