@@ -39,15 +39,24 @@ constexpr std::uint8_t no_ball = 255;
 /// The first ball that each vertex is in.
 std::vector<std::uint8_t> ball_of_vertices(const Mesh& mesh, std::span<const Ball> balls,
                                            const Context& context) {
-  constexpr std::size_t grain = 8192;
+  constexpr std::size_t grain = 8192, block = 64;
   std::vector<std::uint8_t> result(mesh.positions.size(), no_ball);
-  context.for_ranges(result.size(), grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      for (std::size_t k = balls.size(); k-- > 0;) {
-        const bool inside = (mesh.positions[v] - balls[k].center).squaredNorm() <= balls[k].radius2;
+  const auto look_at_block = [&](std::size_t begin, std::size_t end) {
+    // Vertices that follow each other are near each other as a rule, and all far from most balls.
+    Eigen::AlignedBox3f box;
+    for (std::size_t v = begin; v < end; ++v) box.extend(mesh.positions[v]);
+    for (std::size_t k = balls.size(); k-- > 0;) {
+      const auto& [center, radius2] = balls[k];
+      constexpr float rounding = 1e-5f;
+      if (box.squaredExteriorDistance(center) > radius2 * (1 + rounding)) continue;
+      for (std::size_t v = begin; v < end; ++v) {
+        const bool inside = (mesh.positions[v] - center).squaredNorm() <= radius2;
         if (inside) result[v] = static_cast<std::uint8_t>(k);
       }
     }
+  };
+  context.for_ranges(result.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; v += block) look_at_block(v, std::min(v + block, end));
   });
   return result;
 }

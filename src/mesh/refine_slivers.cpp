@@ -25,9 +25,13 @@ using Vec3d = Eigen::Vector3d;
 /// How many vertices subdivide() makes of a face if that is a sliver, else 0.
 double vertices_of_sliver(const Mesh& mesh, std::size_t f, double limit) {
   const auto face = mesh.faces[f];
-  const Vec3d a = mesh.positions[face[0]].cast<double>(),
-              b = mesh.positions[face[1]].cast<double>(),
-              c = mesh.positions[face[2]].cast<double>();
+  const Vec3 &p = mesh.positions[face[0]], &q = mesh.positions[face[1]],
+             &r = mesh.positions[face[2]];
+  constexpr double surely = 1 - 1e-5;  // less than rounding would change
+  const float squared =
+      std::max({(q - p).squaredNorm(), (r - q).squaredNorm(), (p - r).squaredNorm()});
+  if (squared < surely * limit * limit) return 0;
+  const Vec3d a = p.cast<double>(), b = q.cast<double>(), c = r.cast<double>();
   const std::array<double, 3> sides{(b - a).norm(), (c - b).norm(), (a - c).norm()};
   const double longest = std::ranges::max(sides);
   constexpr double thin = 6;  // times as long as wide

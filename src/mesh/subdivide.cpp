@@ -31,32 +31,31 @@ bool is_long(const Mesh& mesh, const Limit& limit, Index a, Index b) {
   return (mesh.positions[b] - mesh.positions[a]).squaredNorm() > longest * longest;
 }
 
-/// Which of these faces have an edge that is too long.
-template <typename Limit, typename FaceAt>
-std::vector<Index> faces_to_split(const Mesh& mesh, const Limit& limit, std::size_t count,
-                                  const FaceAt& face_at, const Context& context) {
+using Triangle = std::array<Index, 3>;
+
+/// The faces that have an edge that is too long.
+template <typename Limit>
+std::vector<Index> faces_to_split(const Mesh& mesh, const Limit& limit, const Context& context) {
+  const Index* const corners = mesh.faces.corners().data();
   return collect<Index>(
-      count,
+      mesh.faces.size(),
       [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
-        for (std::size_t k = begin; k < end; ++k) {
-          const Index f = face_at(k);
-          const auto face = mesh.faces[f];
-          if (is_long(mesh, limit, face[0], face[1]) || is_long(mesh, limit, face[1], face[2]) ||
-              is_long(mesh, limit, face[2], face[0])) {
-            out.push_back(f);
-          }
+        for (std::size_t f = begin; f < end; ++f) {
+          const Index a = corners[3 * f], b = corners[3 * f + 1], c = corners[3 * f + 2];
+          const bool any =
+              is_long(mesh, limit, a, b) | is_long(mesh, limit, b, c) | is_long(mesh, limit, c, a);
+          if (any) out.push_back(static_cast<Index>(f));
         }
       },
       context);
 }
 
 template <typename Limit>
-LongEdges long_edges(const Mesh& mesh, const Limit& limit, std::span<const Index> faces) {
+LongEdges long_edges(const Mesh& mesh, const Limit& limit, std::span<const Triangle> triangles) {
   LongEdges edges;
-  for (const Index f : faces) {
-    const auto face = mesh.faces[f];
+  for (const Triangle& t : triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const Index a = face[k], b = face[(k + 1) % 3];
+      const Index a = t[k], b = t[(k + 1) % 3];
       if (is_long(mesh, limit, a, b)) edges.push_back(edge_of(a, b));
     }
   }
@@ -76,8 +75,6 @@ void split_marks(const LongEdges& edges, Index first, Mesh& mesh) {
     marks.push_back({first + id, b});
   }
 }
-
-using Triangle = std::array<Index, 3>;
 
 /// Splits one triangle by the midpoints of its long edges (`mid[k]` on the edge from corner k to
 /// k + 1).
@@ -116,14 +113,50 @@ void split(const std::vector<Vec3>& positions, Triangle v, Triangle mid,
   }
 }
 
-/// Puts parts in the places of some faces, in increasing order, those of each up to its end.
-/// Returns where they are then.
-std::vector<Index> put_in_place(Faces& faces, std::span<const Index> split_faces,
-                                std::span<const Triangle> parts, std::span<const std::size_t> ends,
-                                const Context& context) {
+/// Faces that are being split, in increasing order, with the parts of each up to its end.
+struct SplitFaces {
+  std::vector<Index> faces;
+  std::vector<Triangle> parts;
+  std::vector<std::size_t> ends;
+};
+
+SplitFaces whole_faces(const Mesh& mesh, std::vector<Index> faces) {
+  SplitFaces whole;
+  for (const Index f : faces) {
+    const auto face = mesh.faces[f];
+    whole.parts.push_back({face[0], face[1], face[2]});
+    whole.ends.push_back(whole.parts.size());
+  }
+  whole.faces = std::move(faces);
+  return whole;
+}
+
+/// Splits all parts at the midpoints of their long edges, which have the numbers from `first` on.
+template <typename Limit>
+void split_parts(const Mesh& mesh, const Limit& limit, const LongEdges& edges, Index first,
+                 SplitFaces& splitting) {
+  std::vector<Triangle> parts;
+  std::size_t part = 0;
+  for (std::size_t& face_end : splitting.ends) {
+    for (; part < face_end; ++part) {
+      const Triangle& corners = splitting.parts[part];
+      Triangle mid;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Index a = corners[k], b = corners[(k + 1) % 3];
+        mid[k] = is_long(mesh, limit, a, b) ? first + find(edges, a, b) : no_index;
+      }
+      split(mesh.positions, corners, mid, parts);
+    }
+    face_end = parts.size();
+  }
+  splitting.parts = std::move(parts);
+}
+
+/// Puts the parts in the places of their faces.
+void put_in_place(Faces& faces, const SplitFaces& splitting, const Context& context) {
+  const auto& [split_faces, parts, ends] = splitting;
   const std::size_t old_count = faces.size(), split_count = split_faces.size();
   Faces result = Faces::uniform(old_count + parts.size() - split_count, 3);
-  std::vector<Index> places(parts.size());
   const Index* const from = std::as_const(faces).corners().data();
   Index* const to = result.corners().data();
   // The parts of each face, and whole faces from there to the next one.
@@ -131,18 +164,16 @@ std::vector<Index> put_in_place(Faces& faces, std::span<const Index> split_faces
     const std::size_t first = k == 0 ? 0 : ends[k - 1];
     std::size_t place = split_faces[k] - k + first;
     for (std::size_t part = first; part < ends[k]; ++part, ++place) {
-      places[part] = static_cast<Index>(place);
       std::ranges::copy(parts[part], to + 3 * place);
     }
     const std::size_t next = k + 1 < split_count ? split_faces[k + 1] : old_count;
     std::copy(from + 3 * (split_faces[k] + std::size_t{1}), from + 3 * next, to + 3 * place);
   };
-  if (split_count > 0) std::copy(from, from + 3 * std::size_t{split_faces[0]}, to);
+  std::copy(from, from + 3 * std::size_t{split_faces[0]}, to);
   context.for_ranges(split_count, 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) put(k);
   });
   faces = std::move(result);
-  return places;
 }
 
 /// Returns whether any edge was split. `on_split` is told of the edge that each new vertex lies on.
@@ -150,15 +181,13 @@ template <typename Limit, typename Split>
 bool split_long_edges(Mesh& mesh, const Limit& limit, const Split& on_split,
                       const Context& context) {
   if (mesh.faces.empty()) return false;
-  std::vector<Index> faces = faces_to_split(
-      mesh, limit, mesh.faces.size(), [](std::size_t k) { return static_cast<Index>(k); }, context);
-  std::vector<Triangle> parts;
-  std::vector<std::size_t> ends;  // of the parts of each face
+  SplitFaces splitting = whole_faces(mesh, faces_to_split(mesh, limit, context));
+  if (splitting.faces.empty()) return false;
   // Each round halves what is too long, so 64 rounds pass any finite length in single precision.
   for (int round = 0; round < 64; ++round) {
     context.check();
-    if (faces.empty()) return round > 0;
-    const LongEdges edges = long_edges(mesh, limit, faces);
+    const LongEdges edges = long_edges(mesh, limit, splitting.parts);
+    if (edges.empty()) break;
     const auto old_count = static_cast<Index>(mesh.positions.size());
     if (edges.size() + old_count > 0xfffffff0u) {
       throw Error(
@@ -169,25 +198,10 @@ bool split_long_edges(Mesh& mesh, const Limit& limit, const Split& on_split,
       append_midpoint(mesh, a, b);
       on_split(a, b);
     }
-    parts.clear();
-    ends.clear();
-    for (const Index f : faces) {
-      const auto face = std::as_const(mesh.faces)[f];
-      const Triangle corners{face[0], face[1], face[2]};
-      Triangle mid;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Index id = find(edges, corners[k], corners[(k + 1) % 3]);
-        mid[k] = id == no_index ? no_index : old_count + id;
-      }
-      split(mesh.positions, corners, mid, parts);
-      ends.push_back(parts.size());
-    }
-    // Only the parts of a split face can have edges that are too long.
-    const std::vector<Index> changed = put_in_place(mesh.faces, faces, parts, ends, context);
+    split_parts(mesh, limit, edges, old_count, splitting);
     split_marks(edges, old_count, mesh);
-    faces = faces_to_split(
-        mesh, limit, changed.size(), [&](std::size_t k) { return changed[k]; }, context);
   }
+  put_in_place(mesh.faces, splitting, context);
   return true;
 }
 
