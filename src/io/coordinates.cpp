@@ -1,5 +1,7 @@
 #include "io/coordinates.h"
 
+#include "util/bounding_box.h"
+
 namespace meshgrain::io {
 namespace {
 
@@ -15,6 +17,13 @@ void Coordinates::push_far(const Eigen::Vector3d& p) {
   if (is_far(box_, 15)) return;  // a little less than 15.5, for the rounding
   near_ = true;
   store(Eigen::Vector3d::Zero());
+}
+
+bool Coordinates::take_if_near(std::vector<Vec3>& positions, const Context& context) {
+  if (size() > 0 || is_far(bounding_box(positions, context).cast<double>(), 16)) return false;
+  positions_ = std::move(positions);
+  near_ = true;
+  return true;
 }
 
 void Coordinates::store(const Eigen::Vector3d& origin) {

@@ -30,6 +30,9 @@ class Coordinates {
     }
   }
 
+  /// Takes all positions at once, before any other, if they need no origin. Else returns false.
+  bool take_if_near(std::vector<Vec3>& positions, const Context& context);
+
   /// Sets the positions and the origin of `mesh`. Throws Error if there are no vertices or more
   /// than an Index can number.
   void move_to(Mesh& mesh, const Input& input);

@@ -8,10 +8,12 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <mutex>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -240,6 +242,8 @@ class Reader {
       }
     }
 
+    const bool any_column = std::ranges::any_of(columns_, &ply::Column::found);
+    if (!any_column && read_plain_vertices(element, places, normals)) return;
     const std::size_t expected = plausible_rows(element);
     coordinates_.reserve(expected);
     if (normals) mesh_.normals.reserve(expected);
@@ -267,6 +271,65 @@ class Reader {
       }
       coordinates_.push(row[0], row[1], row[2]);
       if (normals) mesh_.normals.emplace_back(Eigen::Vector3d(&row[3]).cast<float>());
+    }
+  }
+
+  /// Reads rows of numbers in single precision in a plain loop. Returns false, having read nothing,
+  /// if there are other numbers among those at a place, or if one of them is not finite or all are
+  /// so far from zero that they need an origin, so that the general way looks at each.
+  bool read_plain_vertices(const Element& element, std::span<const std::size_t> places,
+                           bool normals) {
+    if constexpr (std::is_same_v<Body, TextBody>) {
+      return false;
+    } else {
+      std::array<std::size_t, 6> offsets{};
+      std::size_t bytes = 0;
+      for (std::size_t p = 0; p < places.size(); ++p) {
+        const Property& property = element.properties[p];
+        if (property.count_type) return false;
+        if (places[p] < offsets.size()) {
+          if (property.type != Type::f32) return false;
+          offsets[places[p]] = bytes;
+        }
+        bytes += size_of(property.type);
+      }
+      if (element.count > body_.left() / bytes) return false;
+      const auto vector_at = [&](const char* row, std::size_t place) {
+        return Vec3(body_.template load<float>(row + offsets[place]),
+                    body_.template load<float>(row + offsets[place + 1]),
+                    body_.template load<float>(row + offsets[place + 2]));
+      };
+      const char* const begin = body_.at();
+      std::vector<Vec3> positions(element.count), directions(normals ? element.count : 0);
+      std::atomic<bool> all_finite{true};
+      for_rows(element.count, bytes, [&](std::size_t first, std::size_t last) {
+        bool finite = true;
+        for (std::size_t v = first; v < last; ++v) {
+          positions[v] = vector_at(begin + bytes * v, 0);
+          finite &= positions[v].allFinite();
+          if (!normals) continue;
+          directions[v] = vector_at(begin + bytes * v, 3);
+          finite &= directions[v].allFinite();
+        }
+        if (!finite) all_finite = false;
+      });
+      if (!all_finite || !coordinates_.take_if_near(positions, input_.context())) return false;
+      body_.advance(bytes * element.count);
+      mesh_.normals = std::move(directions);
+      return true;
+    }
+  }
+
+  /// Calls `read(first, last)` for ranges of rows of the same size, in parallel.
+  template <typename Read>
+  void for_rows(std::size_t rows, std::size_t bytes, const Read& read) {
+    constexpr std::size_t grain = 1 << 14, block = std::size_t{64} * grain;
+    for (std::size_t first = 0; first < rows; first += block) {
+      input_.progress(body_.at() + bytes * first);
+      const std::size_t count = std::min(block, rows - first);
+      input_.context().for_ranges(count, grain, [&](std::size_t begin, std::size_t end) {
+        read(first + begin, first + end);
+      });
     }
   }
 
@@ -365,20 +428,30 @@ class Reader {
       }
       constexpr std::size_t bytes = 13;
       const char* const begin = body_.at();
-      const std::size_t most = std::min<std::uint64_t>(element.count, body_.left() / bytes);
-      std::size_t rows = 0;
-      while (rows < most && begin[bytes * rows] == 3) ++rows;
+      std::size_t rows = std::min<std::uint64_t>(element.count, body_.left() / bytes);
+      std::mutex mutex;
+      for_rows(rows, bytes, [&](std::size_t first, std::size_t last) {
+        std::size_t row = first;
+        while (row < last && begin[bytes * row] == 3) ++row;
+        if (row == last) return;
+        const std::lock_guard lock(mutex);
+        rows = std::min(rows, row);
+      });
       Faces triangles = Faces::uniform(rows, 3);
-      const std::span<Index> corners = triangles.corners();
+      Index* const corners = triangles.corners().data();
       Index highest = 0;
-      for (std::size_t row = 0; row < rows; ++row) {
-        if (row % 65536 == 0) input_.progress(begin + bytes * row);
-        for (std::size_t c = 0; c < 3; ++c) {
-          const Index index = body_.template load<Index>(begin + bytes * row + 1 + 4 * c);
-          corners[3 * row + c] = index;
-          highest = std::max(highest, index);
+      for_rows(rows, bytes, [&](std::size_t first, std::size_t last) {
+        Index here = 0;
+        for (std::size_t row = first; row < last; ++row) {
+          for (std::size_t c = 0; c < 3; ++c) {
+            const Index index = body_.template load<Index>(begin + bytes * row + 1 + 4 * c);
+            corners[3 * row + c] = index;
+            here = std::max(here, index);
+          }
         }
-      }
+        const std::lock_guard lock(mutex);
+        highest = std::max(highest, here);
+      });
       if (rows == 0 || highest >= vertices_) return 0;
       body_.advance(bytes * rows);
       mesh_.faces = std::move(triangles);
