@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "mesh/vertex_faces.h"
+#include "mesh/vertex_ring.h"
 #include "util/collect.h"
 
 namespace meshgrain {
@@ -25,36 +26,65 @@ struct EdgeFaces {
   }
 };
 
+/// Calls `take(a, b, faces)` for the edges from vertex a to others b > a.
+class EdgesOfVertex {
+ public:
+  template <typename Take>
+  void visit(const Mesh& mesh, std::span<const Index> around, Index a, const Take& take) {
+    if (mesh.faces.uniform_degree() == 3 && ring_.find(mesh, around, a)) {
+      const std::span<const Index> neighbors = ring_.neighbors();
+      for (std::size_t k = 0; k < neighbors.size(); ++k) {
+        if (neighbors[k] < a) continue;
+        take(a, neighbors[k], EdgeFaces{1, 1, around[ring_.left(k)], around[ring_.right(k)]});
+      }
+    } else {
+      visit_any(mesh, around, a, take);
+    }
+  }
+
+ private:
+  struct Use {
+    Index other, face;
+    bool forth;
+  };
+
+  template <typename Take>
+  void visit_any(const Mesh& mesh, std::span<const Index> around, Index a, const Take& take) {
+    uses_.clear();
+    for (const Index f : around) {
+      const auto face = mesh.faces[f];
+      Index from = face.back();
+      for (const Index to : face) {
+        if (from == a && to > a) uses_.push_back({to, f, true});
+        if (to == a && from > a) uses_.push_back({from, f, false});
+        from = to;
+      }
+    }
+    std::sort(uses_.begin(), uses_.end(),
+              [](const Use& x, const Use& y) { return x.other < y.other; });
+    for (std::size_t k = 0; k < uses_.size();) {
+      EdgeFaces faces;
+      const Index b = uses_[k].other;
+      for (; k < uses_.size() && uses_[k].other == b; ++k) {
+        faces.add(uses_[k].face, uses_[k].forth);
+      }
+      take(a, b, faces);
+    }
+  }
+
+  VertexRing ring_;
+  std::vector<Use> uses_;
+};
+
 /// Calls `take(a, b, faces, out)` for every edge a < b.
 template <typename Selected, typename Take>
 std::vector<Selected> select_edges(const Mesh& mesh, const Take& take, const Context& context) {
   const VertexFaces around = vertex_faces(mesh, context);
   const auto look = [&](std::size_t begin, std::size_t end, std::vector<Selected>& out) {
-    struct Use {
-      Index other, face;
-      bool forth;
-    };
-    std::vector<Use> uses;
-    for (std::size_t v = begin; v < end; ++v) {
-      const auto a = static_cast<Index>(v);
-      uses.clear();
-      for (const Index f : around[v]) {
-        const auto face = mesh.faces[f];
-        Index from = face.back();
-        for (const Index to : face) {
-          if (from == a && to > a) uses.push_back({to, f, true});
-          if (to == a && from > a) uses.push_back({from, f, false});
-          from = to;
-        }
-      }
-      std::sort(uses.begin(), uses.end(),
-                [](const Use& x, const Use& y) { return x.other < y.other; });
-      for (std::size_t k = 0; k < uses.size();) {
-        EdgeFaces faces;
-        const Index b = uses[k].other;
-        for (; k < uses.size() && uses[k].other == b; ++k) faces.add(uses[k].face, uses[k].forth);
-        take(a, b, faces, out);
-      }
+    EdgesOfVertex edges;
+    for (auto v = static_cast<Index>(begin); v < end; ++v) {
+      edges.visit(mesh, around[v], v,
+                  [&](Index a, Index b, const EdgeFaces& faces) { take(a, b, faces, out); });
     }
   };
   return collect<Selected>(mesh.positions.size(), look, context);
