@@ -87,12 +87,13 @@ void sort_faces(Faces& faces, std::size_t vertices, const Context& context) {
   Faces sorted;
   if (const std::size_t degree = faces.uniform_degree(); degree > 0) {
     sorted = Faces::uniform(faces.size(), degree);
-    const Index* const from = std::as_const(faces).corners().data();
     Index* const to = sorted.corners().data();
-    const auto put = [&](std::size_t f, std::size_t place) {
-      std::copy_n(from + degree * f, degree, to + degree * place);
-    };
-    sort_by_lowest_vertex(faces, vertices, put, context);
+    with_corners(faces, [&](const auto& corners) {
+      const auto put = [&](std::size_t f, std::size_t place) {
+        std::ranges::copy(corners(f), to + degree * place);
+      };
+      return sort_by_lowest_vertex(faces, vertices, put, context);
+    });
   } else {
     sorted.reserve(faces.size(), faces.corners().size());
     std::vector<Index> order(faces.size());
