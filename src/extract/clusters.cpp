@@ -143,7 +143,19 @@ void merge_clusters(const std::vector<Merge>& merges, const UnitEdges& units, Di
 Clusters average_clusters(const Graph& graph, const PositionField& position,
                           std::span<const Index> nodes, std::span<const Index> cluster_of,
                           std::span<const std::uint8_t> border, std::span<const std::uint8_t> hold,
-                          std::size_t count) {
+                          std::size_t count, const Context& context) {
+  std::vector<float> alphas(nodes.size());
+  context.for_ranges(nodes.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t m = begin; m < end; ++m) {
+      const Index i = nodes[m];
+      const float beta = position.edge_length[i] / 3;
+      // Never quite zero: a cluster whose members are all far from its lattice point needs a place
+      // too.
+      alphas[m] = std::max(
+          std::exp(-(position.points[i] - graph.positions[i]).squaredNorm() / (beta * beta)),
+          1e-20f);
+    }
+  });
   Clusters result;
   result.positions.assign(count, Vec3::Zero());
   result.normals.assign(count, Vec3::Zero());
@@ -154,11 +166,7 @@ Clusters average_clusters(const Graph& graph, const PositionField& position,
   for (std::size_t m = 0; m < nodes.size(); ++m) {
     const Index c = cluster_of[m], i = nodes[m];
     if (c == no_index) continue;
-    const float beta = position.edge_length[i] / 3;
-    // Never quite zero: a cluster whose members are all far from its lattice point needs a place
-    // too.
-    const float alpha = std::max(
-        std::exp(-(position.points[i] - graph.positions[i]).squaredNorm() / (beta * beta)), 1e-20f);
+    const float alpha = alphas[m];
     result.positions[c] += alpha * position.points[i];
     result.normals[c] += alpha * graph.normals[i];
     weight[c] += alpha;
@@ -247,7 +255,7 @@ Clusters collapse_clusters(const Graph& graph, const OrientationField& orientati
   std::vector<Index> nodes(n);
   std::iota(nodes.begin(), nodes.end(), Index{0});
   Clusters result =
-      average_clusters(graph, position, nodes, cluster_of, border, border, kept_count);
+      average_clusters(graph, position, nodes, cluster_of, border, border, kept_count, context);
 
   const auto clusters_of_edge = [&](Index i, Index j) {
     return edge_of(cluster_of[i], cluster_of[j]);

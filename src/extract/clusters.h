@@ -30,7 +30,7 @@ struct Clusters {
 Clusters average_clusters(const Graph& graph, const PositionField& position,
                           std::span<const Index> nodes, std::span<const Index> cluster_of,
                           std::span<const std::uint8_t> border, std::span<const std::uint8_t> hold,
-                          std::size_t count);
+                          std::size_t count, const Context& context);
 
 /// The graph way, for point clouds and everything else: no mesh is needed.
 Clusters collapse_clusters(const Graph& graph, const OrientationField& orientation,

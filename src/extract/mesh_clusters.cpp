@@ -86,7 +86,7 @@ class Collapse {
     }
   }
 
-  CollapsedMesh result() &&;
+  CollapsedMesh result(const Context& context) &&;
 
  private:
   /// The map of the surface with each disk as one vertex, in the frame of its root. Returns the
@@ -208,7 +208,7 @@ std::vector<CollapsedMesh::Meeting> find_meetings(std::span<const Index> sources
   return meetings;
 }
 
-CollapsedMesh Collapse::result() && {
+CollapsedMesh Collapse::result(const Context& context) && {
   const auto vertices = static_cast<Index>(map_.vertices());
   const PolygonMap::Renumbering rank = map_.compact();
   std::vector<Index> cluster(vertices), cluster_of_root(graph_.size(), no_index);
@@ -247,8 +247,8 @@ CollapsedMesh Collapse::result() && {
     members.push_back(i);
     cluster.push_back(cluster_of_root[disks_.root[i]]);
   }
-  Clusters clusters =
-      average_clusters(graph_, position_, members, cluster, rim_, hold_, rank.vertex_count);
+  Clusters clusters = average_clusters(graph_, position_, members, cluster, rim_, hold_,
+                                       rank.vertex_count, context);
   return {std::move(lattice_), std::move(clusters), std::move(roots), std::move(meetings)};
 }
 
@@ -259,7 +259,7 @@ CollapsedMesh collapse_mesh(const Mesh& surface, const FeatureLines& features, c
                             PositionEnergy energy, const Context& context) {
   Collapse collapse(surface, features, graph, orientation, position, energy, context);
   collapse.run(context);
-  return std::move(collapse).result();
+  return std::move(collapse).result(context);
 }
 
 }  // namespace meshgrain
