@@ -8,12 +8,18 @@
 #include <utility>
 
 #include "made_graph.h"
+#include "mesh/long_edges.h"
 #include "mesh/refine_slivers.h"
 #include "meshgrain/statistics.h"
 #include "meshgrain/surface.h"
 
 namespace meshgrain {
 namespace {
+
+void refine(Mesh& mesh, double max_length) {
+  const std::vector<Index> long_faces = faces_with_long_edges(mesh, max_length, Context());
+  refine_slivers(mesh, max_length, long_faces, Context());
+}
 
 /// How many faces have each edge.
 std::map<std::pair<Index, Index>, int> edge_uses(const Mesh& mesh) {
@@ -107,7 +113,7 @@ TEST(RefineSlivers, FewVerticesServeACone) {
   const Mesh cone = cone_of(3000);
   constexpr double limit = 0.05;
   Mesh fine = cone;
-  refine_slivers(fine, limit, Context());
+  refine(fine, limit);
   EXPECT_LE(edge_lengths(fine).max, limit * (1 + 1e-5));
   Mesh plain = cone;
   subdivide(plain, limit);
@@ -132,7 +138,7 @@ TEST(RefineSlivers, FewVerticesServeACone) {
 TEST(RefineSlivers, OthersAreLeftAlone) {
   const Mesh torus = made::shaken(sample_shape("torus", 0.2), 0.02f);
   Mesh fine = torus;
-  refine_slivers(fine, 0.3 * edge_lengths(torus).mean, Context());
+  refine(fine, 0.3 * edge_lengths(torus).mean);
   EXPECT_TRUE(std::ranges::equal(std::as_const(fine).faces.corners(), torus.faces.corners()));
   EXPECT_EQ(fine.positions.size(), torus.positions.size());
 }
@@ -157,7 +163,7 @@ TEST(RefineSlivers, NonManifoldEdgesStayJoined) {
       b = d;
     }
   }
-  refine_slivers(mesh, 0.1, Context());
+  refine(mesh, 0.1);
   EXPECT_LE(edge_lengths(mesh).max, 0.1 * (1 + 1e-5));
   std::size_t borders = 0, triple = 0;
   for (const auto& [edge, count] : edge_uses(mesh)) {

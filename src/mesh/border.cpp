@@ -33,8 +33,8 @@ class EdgesOfVertex {
   void visit(const Mesh& mesh, std::span<const Index> around, Index a, const Take& take) {
     if (mesh.faces.uniform_degree() == 3 && ring_.find(mesh, around, a)) {
       const std::span<const Index> neighbors = ring_.neighbors();
-      for (std::size_t k = 0; k < neighbors.size(); ++k) {
-        if (neighbors[k] < a) continue;
+      const auto lower = std::ranges::count_if(neighbors, [&](Index b) { return b < a; });
+      for (auto k = static_cast<std::size_t>(lower); k < neighbors.size(); ++k) {
         take(a, neighbors[k], EdgeFaces{1, 1, around[ring_.left(k)], around[ring_.right(k)]});
       }
     } else {

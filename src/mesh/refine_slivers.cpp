@@ -25,13 +25,9 @@ using Vec3d = Eigen::Vector3d;
 /// How many vertices subdivide() makes of a face if that is a sliver, else 0.
 double vertices_of_sliver(const Mesh& mesh, std::size_t f, double limit) {
   const auto face = mesh.faces[f];
-  const Vec3 &p = mesh.positions[face[0]], &q = mesh.positions[face[1]],
-             &r = mesh.positions[face[2]];
-  constexpr double surely = 1 - 1e-5;  // less than rounding would change
-  const float squared =
-      std::max({(q - p).squaredNorm(), (r - q).squaredNorm(), (p - r).squaredNorm()});
-  if (squared < surely * limit * limit) return 0;
-  const Vec3d a = p.cast<double>(), b = q.cast<double>(), c = r.cast<double>();
+  const Vec3d a = mesh.positions[face[0]].cast<double>(),
+              b = mesh.positions[face[1]].cast<double>(),
+              c = mesh.positions[face[2]].cast<double>();
   const std::array<double, 3> sides{(b - a).norm(), (c - b).norm(), (a - c).norm()};
   const double longest = std::ranges::max(sides);
   constexpr double thin = 6;  // times as long as wide
@@ -277,20 +273,24 @@ void Refinement::put_back() {
 
 }  // namespace
 
-void refine_slivers(Mesh& mesh, double max_length, const Context& context) {
+bool refine_slivers(Mesh& mesh, double max_length, std::span<const Index> long_faces,
+                    const Context& context) {
   constexpr double few = 0.25;  // of the vertices that there are
   const double made = sum_over_ranges(
-      mesh.faces.size(),
+      long_faces.size(),
       [&](std::size_t begin, std::size_t end) {
         double sum = 0;
-        for (std::size_t f = begin; f < end; ++f) sum += vertices_of_sliver(mesh, f, max_length);
+        for (std::size_t k = begin; k < end; ++k) {
+          sum += vertices_of_sliver(mesh, long_faces[k], max_length);
+        }
         return sum;
       },
       context);
-  if (made <= few * static_cast<double>(mesh.positions.size())) return;
+  if (made <= few * static_cast<double>(mesh.positions.size())) return false;
   Refinement refinement(mesh, max_length, context);
   refinement.run(context);
   refinement.put_back();
+  return true;
 }
 
 }  // namespace meshgrain

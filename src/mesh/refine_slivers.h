@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
 
@@ -10,7 +12,9 @@ namespace meshgrain {
 /// consist of. The longest edges are split first, and then edges between triangles that are nearly
 /// in a plane turned to the other diagonal where that is Delaunay, so that few vertices serve many
 /// slivers. The surface moves by about a hundredth of `max_length`; marked, border and
-/// non-manifold edges stay where they are. Does nothing where slivers are few.
-void refine_slivers(Mesh& triangles, double max_length, const Context& context);
+/// non-manifold edges stay where they are. Returns false, having done nothing, where slivers are
+/// few. `long_faces` are all that have an edge of more than that length.
+bool refine_slivers(Mesh& triangles, double max_length, std::span<const Index> long_faces,
+                    const Context& context);
 
 }  // namespace meshgrain

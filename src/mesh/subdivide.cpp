@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/long_edges.h"
 #include "mesh/midpoint.h"
 #include "meshgrain/error.h"
 #include "meshgrain/surface.h"
@@ -178,11 +179,10 @@ void put_in_place(Faces& faces, const SplitFaces& splitting, const Context& cont
 
 /// Returns whether any edge was split. `on_split` is told of the edge that each new vertex lies on.
 template <typename Limit, typename Split>
-bool split_long_edges(Mesh& mesh, const Limit& limit, const Split& on_split,
-                      const Context& context) {
-  if (mesh.faces.empty()) return false;
-  SplitFaces splitting = whole_faces(mesh, faces_to_split(mesh, limit, context));
-  if (splitting.faces.empty()) return false;
+bool split_long_edges(Mesh& mesh, std::vector<Index> long_faces, const Limit& limit,
+                      const Split& on_split, const Context& context) {
+  if (long_faces.empty()) return false;
+  SplitFaces splitting = whole_faces(mesh, std::move(long_faces));
   // Each round halves what is too long, so 64 rounds pass any finite length in single precision.
   for (int round = 0; round < 64; ++round) {
     context.check();
@@ -207,15 +207,29 @@ bool split_long_edges(Mesh& mesh, const Limit& limit, const Split& on_split,
 
 }  // namespace
 
-void subdivide(Mesh& mesh, double max_length, const Context& context) {
+std::vector<Index> faces_with_long_edges(const Mesh& mesh, double max_length,
+                                         const Context& context) {
+  const auto longest = static_cast<float>(max_length);
+  return faces_to_split(
+      mesh, [&](Index, Index) { return longest; }, context);
+}
+
+void subdivide_faces(Mesh& mesh, double max_length, std::vector<Index> long_faces,
+                     const Context& context) {
   const auto longest = static_cast<float>(max_length);
   split_long_edges(
-      mesh, [&](Index, Index) { return longest; }, [](Index, Index) {}, context);
+      mesh, std::move(long_faces), [&](Index, Index) { return longest; }, [](Index, Index) {},
+      context);
+}
+
+void subdivide(Mesh& mesh, double max_length, const Context& context) {
+  subdivide_faces(mesh, max_length, faces_with_long_edges(mesh, max_length, context), context);
 }
 
 bool subdivide(Mesh& mesh, std::vector<float>& max_lengths, const Context& context) {
+  const auto limit = [&](Index a, Index b) { return std::min(max_lengths[a], max_lengths[b]); };
   return split_long_edges(
-      mesh, [&](Index a, Index b) { return std::min(max_lengths[a], max_lengths[b]); },
+      mesh, faces_to_split(mesh, limit, context), limit,
       [&](Index a, Index b) { max_lengths.push_back(0.5f * (max_lengths[a] + max_lengths[b])); },
       context);
 }

@@ -13,6 +13,7 @@
 #include "features/lines_abreast.h"
 #include "field/transfer.h"
 #include "mesh/border.h"
+#include "mesh/long_edges.h"
 #include "mesh/refine_slivers.h"
 #include "meshgrain/clean.h"
 #include "meshgrain/error.h"
@@ -104,8 +105,11 @@ void Pipeline::refine() {
 bool Pipeline::split_long_edges(double area, const EdgeLengths& edges) {
   const double limit = target_.longest_input_edge(options_, area, edges.mean);
   if (!(edges.max > limit)) return false;
-  refine_slivers(surface_, limit, context_);
-  subdivide(surface_, limit, context_);
+  std::vector<Index> faces = faces_with_long_edges(surface_, limit, context_);
+  if (refine_slivers(surface_, limit, faces, context_)) {
+    faces = faces_with_long_edges(surface_, limit, context_);
+  }
+  subdivide_faces(surface_, limit, std::move(faces), context_);
   return true;
 }
 
