@@ -1,13 +1,18 @@
 #include "finish/crossings.h"
 
-#include <tbb/parallel_sort.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <tuple>
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include "util/collect.h"
+#include "util/hash.h"
+#include "util/sum.h"
 
 namespace meshgrain {
 namespace {
@@ -106,38 +111,148 @@ double penetration(const Triangle& a, const Triangle& b) {
 /// Whether a plane parts two faces, but for the corners that they share: so most neighbours lie,
 /// and this is a small part of the work of comparing their triangles.
 bool are_parted(const Mesh& mesh, std::span<const Index> f, std::span<const Index> g) {
-  const auto is_in = [](std::span<const Index> face, Index v) {
-    return std::ranges::find(face, v) != face.end();
-  };
+  constexpr std::size_t most = 64;  // corners, for which there are bits
+  if (std::max(f.size(), g.size()) > most) return false;
+  std::uint64_t f_shares = 0, g_shares = 0;
   std::array<Index, 2> shared{no_index, no_index};
   std::size_t count = 0;
-  Vec3 across = Vec3::Zero();  // the direction from one to the other
-  for (const Index v : f) {
-    across -= mesh.positions[v] / static_cast<float>(f.size());
-    if (!is_in(g, v)) continue;
-    if (count == shared.size()) return false;
-    shared[count++] = v;
+  for (std::size_t i = 0; i < f.size(); ++i) {
+    for (std::size_t j = 0; j < g.size(); ++j) {
+      if (f[i] != g[j]) continue;
+      if (count == shared.size()) return false;
+      shared[count++] = f[i];
+      f_shares |= std::uint64_t{1} << i;
+      g_shares |= std::uint64_t{1} << j;
+    }
   }
-  for (const Index v : g) across += mesh.positions[v] / static_cast<float>(g.size());
+  const auto middle = [&](std::span<const Index> face) {
+    Vec3 sum = Vec3::Zero();
+    for (const Index v : face) sum += mesh.positions[v];
+    return Vec3(sum / static_cast<float>(face.size()));
+  };
+  Vec3 across = middle(g) - middle(f);
   const Vec3& origin = mesh.positions[count > 0 ? shared[0] : f[0]];
   if (count == 2) {
     const Vec3 edge = mesh.positions[shared[1]] - origin;
     across -= edge * (edge.dot(across) / std::max(edge.squaredNorm(), 1e-30f));
   }
-  const auto range = [&](std::span<const Index> face, std::span<const Index> other) {
+  const auto range = [&](std::span<const Index> face, std::uint64_t shares) {
     std::array<float, 2> result{std::numeric_limits<float>::infinity(),
                                 -std::numeric_limits<float>::infinity()};
-    for (const Index v : face) {
-      if (is_in(other, v)) continue;
-      const float height = across.dot(mesh.positions[v] - origin);
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      if ((shares >> k & 1) != 0) continue;
+      const float height = across.dot(mesh.positions[face[k]] - origin);
       result = {std::min(result[0], height), std::max(result[1], height)};
     }
     return result;
   };
-  const auto [f_low, f_high] = range(f, g);
-  const auto [g_low, g_high] = range(g, f);
+  const auto [f_low, f_high] = range(f, f_shares);
+  const auto [g_low, g_high] = range(g, g_shares);
   const float clear = 10 * static_cast<float>(margin) * (g_high - f_low);
   return count == 0 ? g_low - f_high > clear : f_high < -clear && g_low > clear;
+}
+
+/// The same as penetration() where the boxes of the faces meet.
+double penetration_of_near(const Mesh& mesh, Index f, Index g) {
+  if (are_parted(mesh, mesh.faces[f], mesh.faces[g])) return 0;
+  const std::vector<Triangle> own = triangles_of(mesh, f), other = triangles_of(mesh, g);
+  double sum = 0;
+  for (const Triangle& t : own) {
+    for (const Triangle& u : other) sum += penetration(t, u);
+  }
+  return sum;
+}
+
+/// The faces of a mesh by the cells of a grid that their boxes touch.
+class FaceGrid {
+ public:
+  FaceGrid(const Mesh& mesh, const Context& context);
+
+  /// Of cells by their hashes.
+  std::size_t buckets() const { return starts_.empty() ? 0 : starts_.size() - 1; }
+
+  /// Calls body(f, g), f < g, for pairs of faces whose boxes meet in a bucket: for each in one
+  /// only.
+  template <typename Body>
+  void for_each_pair(std::size_t bucket, const Body& body) const {
+    for (Index e = starts_[bucket]; e < starts_[bucket + 1]; ++e) {
+      for (Index o = e + 1; o < starts_[bucket + 1]; ++o) {
+        const auto& [cell, f] = entries_[e];
+        const auto& [other_cell, g] = entries_[o];
+        if (cell != other_cell || !boxes_[f].intersects(boxes_[g])) continue;
+        // Two meet in the cell of the highest of their low corners.
+        if (cell == key(lows_[f].cwiseMax(lows_[g]))) body(f, g);
+      }
+    }
+  }
+
+ private:
+  using Cell = Eigen::Array<std::uint32_t, 3, 1>;
+  struct Entry {
+    std::uint64_t cell;
+    Index face;
+  };
+
+  static std::uint64_t key(const Cell& cell) {
+    return (std::uint64_t{cell[0]} << 42) | (std::uint64_t{cell[1]} << 21) | cell[2];
+  }
+
+  std::vector<Eigen::AlignedBox3f> boxes_;
+  std::vector<Cell> lows_, highs_;  // the cells of the boxes' corners
+  std::vector<Index> starts_;       // of the buckets
+  std::vector<Entry> entries_;      // bucket after bucket, by increasing face
+};
+
+FaceGrid::FaceGrid(const Mesh& mesh, const Context& context) : boxes_(mesh.faces.size()) {
+  struct Extent {
+    Vec3 lowest = Vec3::Constant(std::numeric_limits<float>::infinity());
+    double sizes = 0;
+
+    Extent operator+(const Extent& o) const { return {lowest.cwiseMin(o.lowest), sizes + o.sizes}; }
+  };
+  const std::size_t count = boxes_.size();
+  const auto [lowest, sizes] = sum_over_ranges(
+      count,
+      [&](std::size_t begin, std::size_t end) {
+        Extent extent;
+        for (std::size_t f = begin; f < end; ++f) {
+          boxes_[f] = face_box(mesh, static_cast<Index>(f));
+          extent = extent + Extent{boxes_[f].min(), boxes_[f].sizes().maxCoeff()};
+        }
+        return extent;
+      },
+      context);
+  if (!(sizes > 0)) return;
+  const double cells_a_length = static_cast<double>(count) / (1.5 * sizes);
+  const auto cell = [&](const Vec3& p) -> Cell {
+    return ((p - lowest).cast<double>() * cells_a_length).cast<std::uint32_t>();
+  };
+  lows_.resize(count);
+  highs_.resize(count);
+  for (std::size_t f = 0; f < count; ++f) {
+    lows_[f] = cell(boxes_[f].min());
+    highs_[f] = cell(boxes_[f].max());
+  }
+  const int bits = std::bit_width(count);
+  const auto for_each_entry = [&](const auto& body) {
+    for (auto f = static_cast<Index>(count); f-- > 0;) {
+      for (auto x = lows_[f][0]; x <= highs_[f][0]; ++x) {
+        for (auto y = lows_[f][1]; y <= highs_[f][1]; ++y) {
+          for (auto z = lows_[f][2]; z <= highs_[f][2]; ++z) {
+            const std::uint64_t at = key(Cell(x, y, z));
+            body(hash64(at) >> (64 - bits), Entry{at, f});
+          }
+        }
+      }
+    }
+  };
+  // A counting sort: starts_ are first the ends, and move down as the entries come in.
+  starts_.assign((std::size_t{1} << bits) + 1, 0);
+  for_each_entry([&](std::uint64_t bucket, const Entry&) { ++starts_[bucket]; });
+  std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
+  entries_.resize(starts_.back());
+  for_each_entry(
+      [&](std::uint64_t bucket, const Entry& entry) { entries_[--starts_[bucket]] = entry; });
 }
 
 }  // namespace
@@ -150,71 +265,21 @@ Eigen::AlignedBox3f face_box(const Mesh& mesh, Index f) {
 
 double penetration(const Mesh& mesh, Index f, Index g) {
   if (f == g || !face_box(mesh, f).intersects(face_box(mesh, g))) return 0;
-  if (are_parted(mesh, mesh.faces[f], mesh.faces[g])) return 0;
-  const std::vector<Triangle> own = triangles_of(mesh, f), other = triangles_of(mesh, g);
-  double sum = 0;
-  for (const Triangle& t : own) {
-    for (const Triangle& u : other) sum += penetration(t, u);
-  }
-  return sum;
+  return penetration_of_near(mesh, f, g);
 }
 
 std::vector<std::array<Index, 2>> find_crossings(const Mesh& mesh, const Context& context) {
-  // The faces by the cells of a grid that their boxes touch. Two meet in the cell of the highest
-  // of their low corners, and are compared there only.
-  const auto count = static_cast<Index>(mesh.faces.size());
-  std::vector<Eigen::AlignedBox3f> boxes(count);
-  double size = 0;
-  Vec3 lowest = Vec3::Constant(std::numeric_limits<float>::infinity());
-  for (Index f = 0; f < count; ++f) {
-    boxes[f] = face_box(mesh, f);
-    lowest = lowest.cwiseMin(boxes[f].min());
-    size += boxes[f].sizes().maxCoeff() / static_cast<double>(count);
-  }
-  if (!(size > 0)) return {};
-  const auto cell = [&](const Vec3& p, int axis) {
-    return static_cast<std::uint64_t>((p[axis] - lowest[axis]) / (1.5 * size));
-  };
-  const auto key = [](std::uint64_t x, std::uint64_t y, std::uint64_t z) {
-    return (x << 42) | (y << 21) | z;
-  };
-  struct Entry {
-    std::uint64_t cell;
-    Index face;
-    bool operator<(const Entry& o) const { return std::tie(cell, face) < std::tie(o.cell, o.face); }
-  };
-  std::vector<Entry> entries;
-  for (Index f = 0; f < count; ++f) {
-    const Vec3 &low = boxes[f].min(), &high = boxes[f].max();
-    for (auto x = cell(low, 0); x <= cell(high, 0); ++x) {
-      for (auto y = cell(low, 1); y <= cell(high, 1); ++y) {
-        for (auto z = cell(low, 2); z <= cell(high, 2); ++z) entries.push_back({key(x, y, z), f});
-      }
-    }
-  }
-  context.run([&] { tbb::parallel_sort(entries); });
-  std::vector<std::uint8_t> crosses(entries.size(), 0);
-  const auto for_each_partner = [&](std::size_t e, const auto& body) {
-    const auto& [own, f] = entries[e];
-    for (std::size_t o = e + 1; o < entries.size() && entries[o].cell == own; ++o) {
-      const Index g = entries[o].face;
-      if (!boxes[f].intersects(boxes[g])) continue;
-      const Vec3 low = boxes[f].min().cwiseMax(boxes[g].min());
-      if (key(cell(low, 0), cell(low, 1), cell(low, 2)) == own && penetration(mesh, f, g) > 0) {
-        body(g);
-      }
-    }
-  };
-  context.for_ranges(entries.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t e = begin; e < end; ++e) {
-      for_each_partner(e, [&](Index) { crosses[e] = 1; });
-    }
-  });
-  std::vector<std::array<Index, 2>> result;
-  for (std::size_t e = 0; e < entries.size(); ++e) {
-    if (!crosses[e]) continue;
-    for_each_partner(e, [&](Index g) { result.push_back({entries[e].face, g}); });
-  }
+  const FaceGrid grid(mesh, context);
+  auto result = collect<std::array<Index, 2>>(
+      grid.buckets(),
+      [&](std::size_t begin, std::size_t end, std::vector<std::array<Index, 2>>& found) {
+        for (std::size_t bucket = begin; bucket < end; ++bucket) {
+          grid.for_each_pair(bucket, [&](Index f, Index g) {
+            if (penetration_of_near(mesh, f, g) > 0) found.push_back({f, g});
+          });
+        }
+      },
+      context);
   std::sort(result.begin(), result.end());
   return result;
 }
