@@ -42,7 +42,7 @@ Vec3 Projector::nearest_around(const Vec3& p, Index vertex, Index& nearest_corne
 }
 
 Vec3 Projector::normal(Index vertex) const {
-  if (surface_.is_point_cloud()) return graph_.normals[vertex];
+  if (nodes_are_vertices()) return graph_.normals[vertex];
   Vec3 sum = Vec3::Zero();
   for (const Index f : around_[vertex]) {
     const auto face = surface_.faces[f];
@@ -101,7 +101,7 @@ Vec3 Projector::project(const Vec3& p, Index& seed) const {
 }
 
 Projector::Plane Projector::touch(const Vec3& p, Index& seed) const {
-  if (surface_.is_point_cloud() || graph_.size() != surface_.positions.size()) {
+  if (surface_.is_point_cloud() || !nodes_are_vertices()) {
     const Vec3 point = project(p, seed);
     return {point, normal(seed)};
   }

@@ -45,6 +45,7 @@ class Projector {
                               std::size_t most) const;
 
  private:
+  bool nodes_are_vertices() const { return graph_.size() == surface_.positions.size(); }
   /// Goes on to the nearest of the neighbours in the graph, while that is nearer to p.
   void walk_to_nearest(const Vec3& p, Index& seed) const;
   Vec3 nearest_around(const Vec3& p, Index vertex, Index& nearest_corner) const;
