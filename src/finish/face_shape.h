@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -23,13 +24,17 @@ inline Vec3 area_vector(std::span<const Index> face, const std::vector<Vec3>& po
 /// turned over or reflex, -1 if an edge has no length.
 inline float least_sine(std::span<const Index> face, const std::vector<Vec3>& positions,
                         const Vec3& normal) {
-  const std::size_t n = face.size();
   float least = 1;
-  for (std::size_t k = 0; k < n; ++k) {
-    const Vec3& p = positions[face[k]];
-    const Vec3 a = positions[face[(k + 1) % n]] - p, b = positions[face[(k + n - 1) % n]] - p;
-    const float lengths = a.norm() * b.norm();
-    least = std::min(least, lengths > 0 ? normal.dot(a.cross(b)) / lengths : -1.0f);
+  Vec3 back = positions[face.back()] - positions[face[0]];
+  float back_squared = back.squaredNorm();
+  for (std::size_t k = 0; k < face.size(); ++k) {
+    const Vec3& next = positions[face[k + 1 < face.size() ? k + 1 : 0]];
+    const Vec3 ahead = next - positions[face[k]];
+    const float ahead_squared = ahead.squaredNorm(), squares = ahead_squared * back_squared;
+    const float height = normal.dot(ahead.cross(back));
+    least = std::min(least, squares > 0 ? height / std::sqrt(squares) : -1.0f);
+    back = -ahead;
+    back_squared = ahead_squared;
   }
   return least;
 }

@@ -16,12 +16,21 @@
 namespace meshgrain {
 namespace {
 
+constexpr float diagonal = std::numbers::sqrt2_v<float> / 2;
+constexpr float directions[][2] = {{1, 0},  {diagonal, diagonal},   {0, 1},  {-diagonal, diagonal},
+                                   {-1, 0}, {-diagonal, -diagonal}, {0, -1}, {diagonal, -diagonal}};
+
+/// Of a regular polygon with n corners.
+float best_quality(std::size_t n) {
+  return n == 4 ? 1 : std::sin(2 * std::numbers::pi_v<float> / static_cast<float>(n));
+}
+
+/// `area`: the face's area vector.
 float face_quality(std::span<const Index> face, const std::vector<Vec3>& positions,
-                   const Vec3& upward) {
-  Vec3 normal = area_vector(face, positions);
-  const float length = normal.norm();
+                   const Vec3& area, const Vec3& upward) {
+  const float length = area.norm();
   if (!(length > 0)) return -1;
-  normal /= length;
+  const Vec3 normal = area / length;
   const float least = least_sine(face, positions, normal);
   const float towards = normal.dot(upward);
   return towards < 0 ? std::min(least, 0.0f) - 1 + towards : least;
@@ -144,14 +153,25 @@ bool LocalSearch::has_news(Index v) const {
   return false;
 }
 
-float LocalSearch::quality_here(Index f) const {
+LocalSearch::Upward LocalSearch::upward(Index f) const {
   // On a crease, and more so at a corner, the normal is a mean of sides that the face is not on.
-  const auto face = std::as_const(mesh_.faces)[f];
   Vec3 of_free = Vec3::Zero(), of_lines = Vec3::Zero();
-  for (const Index v : face) (placement_.is_on_line(v) ? of_lines : of_free) += normals_[v];
-  const float q = face_quality(face, mesh_.positions, (of_free + of_lines).normalized());
-  if (q > 0 || of_free.isZero() || of_lines.isZero()) return q;
-  return std::max(q, face_quality(face, mesh_.positions, of_free.normalized()));
+  for (const Index v : std::as_const(mesh_.faces)[f]) {
+    (placement_.is_on_line(v) ? of_lines : of_free) += normals_[v];
+  }
+  const bool mixed = !of_free.isZero() && !of_lines.isZero();
+  return {(of_free + of_lines).normalized(), mixed ? of_free.normalized() : Vec3(Vec3::Zero())};
+}
+
+float LocalSearch::quality_here(Index f, const Vec3& area, const Upward& upward) const {
+  const auto face = std::as_const(mesh_.faces)[f];
+  const float q = face_quality(face, mesh_.positions, area, upward.of_all);
+  if (q > 0 || upward.of_free.isZero(0)) return q;
+  return std::max(q, face_quality(face, mesh_.positions, area, upward.of_free));
+}
+
+float LocalSearch::quality_here(Index f) const {
+  return quality_here(f, area_vector(std::as_const(mesh_.faces)[f], mesh_.positions), upward(f));
 }
 
 float LocalSearch::quality_among_neighbors(Index f) const {
@@ -162,39 +182,45 @@ float LocalSearch::quality_among_neighbors(Index f) const {
       upward += area_vector(std::as_const(mesh_.faces)[g], mesh_.positions);
     }
   }
-  return face_quality(face, mesh_.positions, upward.normalized());
+  return face_quality(face, mesh_.positions, area_vector(face, mesh_.positions),
+                      upward.normalized());
 }
 
-/// What the faces around a vertex lack, the worst counting most, and how uneven they are. From
-/// `limit` on it need not be exact.
-double LocalSearch::lack(Index v, std::span<const Rival> near, double limit) const {
-  constexpr double good = 0.75;
-  constexpr double against_cutting_off = 300;  // before the shapes of faces
-  double sum = against_cutting_off * placement_.cut_off(v);
-  for (const Index f : around_[v]) {
-    const double q = quality_here(f);
-    const double best = std::sin(2 * std::numbers::pi / static_cast<double>(mesh_.faces.degree(f)));
-    const double irregular = std::max(0.0, best - q), bad = std::max(0.0, good - q);
+float LocalSearch::shape_lack(Index v, std::span<const Upward> upward, float limit) const {
+  constexpr float good = 0.75f;
+  constexpr float against_cutting_off = 300;  // before the shapes of faces
+  float sum = against_cutting_off * static_cast<float>(placement_.cut_off(v));
+  for (std::size_t k = 0; k < upward.size() && sum < limit; ++k) {
+    const Index f = around_[v][k];
+    const auto face = std::as_const(mesh_.faces)[f];
+    const Vec3 area = area_vector(face, mesh_.positions);
+    const float q = quality_here(f, area, upward[k]);
+    const float irregular = std::max(0.0f, best_quality(face.size()) - q);
+    const float bad = std::max(0.0f, good - q);
     sum += irregular * irregular + 10 * bad * bad;
-    const float area = area_vector(std::as_const(mesh_.faces)[f], mesh_.positions).norm();
-    const double uneven = std::log(std::max(area / mean_area_, 1e-3f));
-    sum += 0.1 * uneven * uneven;
+    const float uneven = std::log(std::max(area.norm() / mean_area_, 1e-3f));
+    sum += 0.1f * uneven * uneven;
   }
+  return sum;
+}
+
+float LocalSearch::lack(Index v, const Star& star, float limit) const {
+  float sum = shape_lack(v, star.upward, limit);
   for (const Index f : around_[v]) {
-    if (sum < limit) sum += crossing(f, near, limit - sum);
+    if (sum < limit) sum += crossing(f, star.near, limit - sum);
   }
   return sum;
 }
 
 /// From `limit` on it need not be exact.
-double LocalSearch::crossing(Index f, std::span<const Rival> near, double limit) const {
+float LocalSearch::crossing(Index f, std::span<const Rival> near, float limit) const {
   if (!is_rival_[f]) return 0;
   const Eigen::AlignedBox3f box = face_box(mesh_, f);
-  double sum = 0;
+  float sum = 0;
   for (const auto& [g, near_box] : near) {
     if (near_box && !box.intersects(*near_box)) continue;
     const double deep = penetration(mesh_, f, g);
-    if (deep > 0) sum += 1 + 20 * deep / std::sqrt(mean_area_);
+    if (deep > 0) sum += 1 + 20 * static_cast<float>(deep) / std::sqrt(mean_area_);
     if (sum >= limit) break;
   }
   return sum;
@@ -233,16 +259,22 @@ bool LocalSearch::improve(Index v) {
                 static_cast<float>(face.size() * around_[v].size());
     }
   }
-  const std::vector<Rival> near = rivals_near(v, length);
-  const double before = lack(v, near, std::numeric_limits<double>::infinity());
-  if (before < 1e-6) return false;
+  Star star{{}, rivals_near(v, length)};
+  for (const Index f : around_[v]) star.upward.push_back(upward(f));
+  const float before = lack(v, star, std::numeric_limits<float>::infinity());
+  if (before < 1e-6f) return false;
   Vec3 best = mesh_.positions[v];
   Placement::Seed best_seed = placement_.seed(v);
-  double least = before;
+  float least = before;
+  // Most targets are far from being better: that is seen before they are put on the surface.
+  constexpr float far = 1.02f;
+  const bool is_free = placement_.is_free(v);
   const auto attempt = [&](const Vec3& target) {
+    mesh_.positions[v] = target;
+    if (is_free && shape_lack(v, star.upward, far * least) >= far * least) return;
     placement_.set_seed(v, best_seed);
     mesh_.positions[v] = placement_.place(target, v);
-    const double now = lack(v, near, least);
+    const float now = lack(v, star, least);
     if (now < least) {
       least = now;
       best = mesh_.positions[v];
@@ -250,17 +282,15 @@ bool LocalSearch::improve(Index v) {
     }
   };
   attempt(mean_neighbor(v));
-  constexpr int directions = 8;
   for (float step = first_step(v) * length; step > 0.03f * length; step /= 2) {
     const Vec3 from = best;
-    for (int k = 0; k < directions; ++k) {
-      const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(k) / directions;
-      attempt(from + step * (std::cos(angle) * x + std::sin(angle) * y));
+    for (const auto& [along, across] : directions) {
+      attempt(from + step * (along * x + across * y));
     }
   }
   mesh_.positions[v] = best;
   placement_.set_seed(v, best_seed);
-  if (least > 0.99 * before) return false;
+  if (least > 0.99f * before) return false;
   put(v, {best, best_seed});
   return true;
 }

@@ -56,15 +56,32 @@ class LocalSearch {
     std::optional<Eigen::AlignedBox3f> box;  // none if it moves with the vertex being tried
   };
 
+  /// Where the surface looks under a face.
+  struct Upward {
+    Vec3 of_all, of_free;  // of_free: zero if it is no different
+  };
+
+  /// What stays the same around a vertex while it is tried at several places.
+  struct Star {
+    std::vector<Upward> upward;  // of its faces
+    std::vector<Rival> near;
+  };
+
   std::vector<std::vector<Index>> batches(std::span<const Index> vertices);
   bool has_news(Index v) const;
   bool improve(Index v);
   float first_step(Index v) const;
+  Upward upward(Index f) const;
+  float quality_here(Index f, const Vec3& area, const Upward& upward) const;
   float quality_here(Index f) const;
-  double lack(Index v, std::span<const Rival> near, double limit) const;
+  /// What the shapes of the faces around a vertex lack, the worst counting most, and how uneven
+  /// they are; from `limit` on it need not be exact. `upward`: of those faces.
+  float shape_lack(Index v, std::span<const Upward> upward, float limit) const;
+  /// With how they pass through others.
+  float lack(Index v, const Star& star, float limit) const;
   /// The rivals that the faces around v may meet when it moves by up to a distance.
   std::vector<Rival> rivals_near(Index v, float distance) const;
-  double crossing(Index f, std::span<const Rival> near, double limit) const;
+  float crossing(Index f, std::span<const Rival> near, float limit) const;
 
   Mesh& mesh_;
   const VertexFaces& around_;
