@@ -1,106 +1,158 @@
 #include "finish/regular_polygon.h"
 
-#include <Eigen/Geometry>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
-#include "finish/face_shape.h"
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "finish/regular_polygon.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
 
+#include "field/lanes.h"
+
+HWY_BEFORE_NAMESPACE();
 namespace meshgrain {
+namespace HWY_NAMESPACE {
 namespace {
 
-/// The regular polygon with n corners at a distance of 1 from zero: the directions of the corners,
-/// the first along x, and the length of the sides.
-struct RegularPolygon {
-  std::vector<std::array<float, 2>> corners;
-  float side = 0;
-
-  static RegularPolygon of(std::size_t n) {
-    const double step = 2 * std::numbers::pi / static_cast<double>(n);
-    RegularPolygon result{{}, static_cast<float>(2 * std::sin(step / 2))};
-    for (std::size_t k = 0; k < n; ++k) {
-      const double angle = step * static_cast<double>(k);
-      result.corners.push_back(
-          {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))});
+/// As many faces as there are lanes, all with n corners; those beyond `count` repeat the first one.
+class FaceLanes {
+ public:
+  HWY_INLINE FaceLanes(const Faces& faces, const Index* which, std::size_t count)
+      : corners_(faces.corners().data()), degree_(faces.degree(which[0])) {
+    HWY_ALIGN std::int32_t index[most_lanes];
+    for (std::size_t k = 0; k < hn::Lanes(IntLanes()); ++k) {
+      index[k] = static_cast<std::int32_t>(faces.first(which[k < count ? k : 0]));
     }
-    return result;
+    first_ = hn::Load(IntLanes(), index);
   }
+
+  std::size_t degree() const { return degree_; }
+  HWY_INLINE Ints corner(std::size_t k) const {
+    return gather(corners_, first_ + hn::Set(IntLanes(), static_cast<std::int32_t>(k)));
+  }
+
+ private:
+  const Index* corners_;
+  std::size_t degree_;
+  Ints first_;
 };
 
-/// The unit normal of a face with this area vector; none if there is nothing to tell it from.
-std::optional<Vec3> upright(const Vec3& area, const Vec3& upward) {
-  const float along = area.dot(upward), squared = area.squaredNorm();
-  const bool stands = along > 0 && along * along >= 0.04f * squared * upward.squaredNorm();
-  const Vec3& normal = stands ? area : upward;
-  const float length = normal.norm();
-  if (!(length > 0)) return std::nullopt;
-  return normal / length;
+HWY_INLINE Vec3s normalized(const Vec3s& v) {
+  const Floats length = norm(v);
+  return choose(hn::Gt(length, all(0)), all(1) / length, all(0)) * v;
 }
 
-/// The vector from the center to the first corner, drawn towards the length that it should have.
-Vec3 resized(Vec3 x, const Vec3& normal, const PolygonFit& fit, float side_of_unit) {
-  x -= normal * normal.dot(x);
-  const float size = x.norm();
-  if (size > 0) x *= 1 - fit.evenness + fit.evenness * fit.side / (side_of_unit * size);
-  return x;
+/// The unit normals of faces with these area vectors; zero if there is nothing to tell them from.
+HWY_INLINE Vec3s upright(const Vec3s& area, const Vec3s& upward) {
+  const Floats along = dot(area, upward);
+  const Mask stands =
+      hn::And(hn::Gt(along, all(0)),
+              hn::Ge(along * along, all(0.04f) * dot(area, area) * dot(upward, upward)));
+  return normalized(choose(stands, area, upward));
 }
 
-/// Quads are most of all faces, and their diagonals say everything.
-void fit_square(std::span<const Index> face, const std::vector<Vec3>& positions,
-                const PolygonFit& fit, std::span<Vec3> corners) {
-  const Vec3 &a = positions[face[0]], &b = positions[face[1]], &c = positions[face[2]],
-             &d = positions[face[3]];
-  const Vec3 center = 0.25f * ((a + c) + (b + d)), along = a - c, across = b - d;
-  const auto normal = upright(along.cross(across), fit.upward);
-  if (!normal) {
-    std::ranges::fill(corners, center);
-    return;
+/// The corners of a polygon at a distance of 1 from zero, the first along x.
+using Turns = std::span<const std::array<float, 2>>;
+
+struct Fitted {
+  Vec3s center, x, y;
+  Mask folded;
+};
+
+HWY_INLINE Fitted fit(const FaceLanes& faces, const Vec3* positions, const Vec3* normals,
+                      const PolygonFit& wanted, Turns turns, float side_of_unit) {
+  const std::size_t n = faces.degree();
+  Vec3s upward{all(0), all(0), all(0)};
+  Floats relative = all(0);
+  const bool uniform = wanted.relative_size.uniform();
+  for (std::size_t k = 0; k < n; ++k) {
+    const Ints v = faces.corner(k);
+    upward = upward + gather(normals, v);
+    if (!uniform) relative = relative + gather(wanted.relative_size.values.data(), v);
   }
-  const Vec3 x =
-      resized(0.25f * (along - normal->cross(across)), *normal, fit, std::numbers::sqrt2_v<float>);
-  const Vec3 y = normal->cross(x);
-  corners[0] = center + x;
-  corners[1] = center + y;
-  corners[2] = center - x;
-  corners[3] = center - y;
+  const Floats count = all(static_cast<float>(n));
+  relative = uniform ? all(wanted.relative_size[0]) : relative / count;
+
+  // The coefficient is the mean of the corners, each turned back by the angle of the polygon's.
+  const Vec3s start = gather(positions, faces.corner(0));
+  const Vec3s zero = start - start;
+  Vec3s before = gather(positions, faces.corner(n - 1)), here = start;
+  Vec3s center = zero, along = zero, across = zero, area = zero;
+  Mask convex = hn::Eq(all(0), all(0));
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vec3s next = k + 1 < n ? gather(positions, faces.corner(k + 1)) : start;
+    const Vec3s ahead = next - here;
+    const Vec3s from_start = here - start;
+    convex = hn::And(convex, hn::Gt(dot(cross(ahead, before - here), upward), all(0)));
+    center = center + from_start;
+    along = along + all(turns[k][0]) * from_start;
+    across = across + all(turns[k][1]) * from_start;
+    area = area + cross(from_start, ahead);
+    before = here;
+    here = next;
+  }
+  const Vec3s normal = upright(area, upward);
+  Vec3s x = project_to_plane((along - cross(normal, across)) / count, normal);
+  const Floats size = norm(x), evenness = all(wanted.evenness);
+  const Floats wanted_size = all(wanted.side / side_of_unit) * relative;
+  const Floats scale = all(1) - evenness + evenness * wanted_size / size;
+  // Nothing is known of faces without a normal.
+  const Mask known = hn::And(hn::Gt(size, all(0)), hn::Gt(dot(normal, normal), all(0)));
+  x = choose(known, scale, all(0)) * x;
+  return {start + center / count, x, cross(normal, x), hn::Not(convex)};
+}
+
+void fit_all(const Mesh& mesh, std::span<const Index> which, const std::vector<Vec3>& normals,
+             const PolygonFit& wanted, Turns turns, std::vector<Vec3>& places,
+             std::vector<Index>& folded) {
+  const std::size_t width = hn::Lanes(Lanes());
+  const float side_of_unit = std::hypot(turns[1][0] - turns[0][0], turns[1][1] - turns[0][1]);
+  for (std::size_t begin = 0; begin < which.size(); begin += width) {
+    const std::size_t count = std::min(width, which.size() - begin);
+    const Index* some = which.data() + begin;
+    const FaceLanes faces(mesh.faces, some, count);
+    const Fitted fitted =
+        fit(faces, mesh.positions.data(), normals.data(), wanted, turns, side_of_unit);
+    for (std::size_t k = 0; k < turns.size(); ++k) {
+      const Vec3s place =
+          fitted.center + (all(turns[k][0]) * fitted.x + all(turns[k][1]) * fitted.y);
+      Vec3 corners[most_lanes];
+      store(place, count, corners);
+      for (std::size_t i = 0; i < count; ++i) places[mesh.faces.first(some[i]) + k] = corners[i];
+    }
+    if (hn::AllFalse(Lanes(), fitted.folded)) continue;
+    HWY_ALIGN float flags[most_lanes];
+    hn::Store(choose(fitted.folded, all(1), all(0)), Lanes(), flags);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (flags[i] > 0) folded.push_back(some[i]);
+    }
+  }
 }
 
 }  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace meshgrain
+HWY_AFTER_NAMESPACE();
 
-void fit_regular_polygon(std::span<const Index> face, const std::vector<Vec3>& positions,
-                         const PolygonFit& fit, std::span<Vec3> corners) {
-  const std::size_t n = face.size();
-  if (n == 4) return fit_square(face, positions, fit, corners);
-  static const std::array known{RegularPolygon::of(3), RegularPolygon::of(4),
-                                RegularPolygon::of(5), RegularPolygon::of(6),
-                                RegularPolygon::of(7), RegularPolygon::of(8)};
-  const bool is_known = n - 3 < known.size();
-  RegularPolygon larger;
-  if (!is_known) larger = RegularPolygon::of(n);
-  const RegularPolygon& polygon = is_known ? known[n - 3] : larger;
-  // The coefficient is the mean of the corners, each turned back by the angle of the polygon's.
-  Vec3 center = Vec3::Zero(), along = Vec3::Zero(), across = Vec3::Zero();
+#if HWY_ONCE
+namespace meshgrain {
+
+HWY_EXPORT(fit_all);
+
+void fit_regular_polygons(const Mesh& mesh, std::span<const Index> which,
+                          const std::vector<Vec3>& normals, const PolygonFit& fit,
+                          std::vector<Vec3>& places, std::vector<Index>& folded) {
+  if (which.empty()) return;
+  const std::size_t n = mesh.faces.degree(which[0]);
+  std::vector<std::array<float, 2>> turns(n);
   for (std::size_t k = 0; k < n; ++k) {
-    const Vec3& p = positions[face[k]];
-    center += p;
-    along += polygon.corners[k][0] * p;
-    across += polygon.corners[k][1] * p;
+    const double angle = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(n);
+    turns[k] = {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))};
   }
-  const auto count = static_cast<float>(n);
-  center /= count;
-  const auto normal = upright(area_vector(face, positions), fit.upward);
-  if (!normal) {
-    std::ranges::fill(corners, center);
-    return;
-  }
-  const Vec3 x = resized((along - normal->cross(across)) / count, *normal, fit, polygon.side);
-  const Vec3 y = normal->cross(x);
-  for (std::size_t k = 0; k < n; ++k) {
-    corners[k] = center + polygon.corners[k][0] * x + polygon.corners[k][1] * y;
-  }
+  HWY_DYNAMIC_DISPATCH(fit_all)(mesh, which, normals, fit, turns, places, folded);
 }
 
 }  // namespace meshgrain
+#endif

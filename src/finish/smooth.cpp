@@ -3,7 +3,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
+#include <ranges>
 #include <utility>
 
 #include "finish/bare_ends.h"
@@ -18,6 +20,7 @@
 #include "mesh/vertex_faces.h"
 #include "meshgrain/finish.h"
 #include "meshgrain/surface.h"
+#include "util/sort_unique.h"
 #include "util/sum.h"
 
 namespace meshgrain {
@@ -53,6 +56,23 @@ float mean_side(const Mesh& mesh, const EdgeLength& relative, const Context& con
   return areas.wanted > 0 ? static_cast<float>(std::sqrt(areas.faces / areas.wanted)) : 0.0f;
 }
 
+/// Faces in batches in which all have as many corners.
+template <typename Which>
+std::vector<std::vector<Index>> batches_of(const Faces& faces, const Which& which) {
+  constexpr std::size_t most = 512;
+  std::vector<std::vector<Index>> batches;
+  std::map<std::size_t, std::vector<Index>> open;  // by the number of corners
+  for (const Index f : which) {
+    std::vector<Index>& batch = open[faces.degree(f)];
+    batch.push_back(f);
+    if (batch.size() == most) batches.push_back(std::exchange(batch, {}));
+  }
+  for (auto& [degree, batch] : open) {
+    if (!batch.empty()) batches.push_back(std::move(batch));
+  }
+  return batches;
+}
+
 /// Each iteration fits a regular polygon to every face, moves each vertex to the mean of its places
 /// in those, and back onto the surface.
 class Smoother {
@@ -81,7 +101,9 @@ class Smoother {
   template <typename Move>
   void move_vertices(const Move& move, std::vector<Vec3>& places);
   void look_up_sizes();
-  void fit_polygons(float side);
+  /// Returns the faces that are folded.
+  std::vector<Index> fit_polygons(const std::vector<std::vector<Index>>& batches, float side);
+  void unfold(const std::vector<Index>& folded, float side);
   Vec3 mean_target(Index v) const;
 
   Extraction& extraction_;
@@ -93,11 +115,12 @@ class Smoother {
   Placement placement_;
   VertexFaces around_;
   std::vector<Index> corners_;  // beside around_.faces: which corner of the face the vertex is
-  EdgeLength sizes_{1.0f};      // relative, of the vertices where they are
-  std::vector<Vec3> previous_;  // positions, one iteration ago
-  int done_ = 0;                // iterations
-  std::vector<Vec3> targets_;   // of every corner of a face
-  std::vector<Vec3> normals_;   // of the surface
+  std::vector<std::vector<Index>> batches_;  // all faces
+  EdgeLength sizes_{1.0f};                   // relative, of the vertices where they are
+  std::vector<Vec3> previous_;               // positions, one iteration ago
+  int done_ = 0;                             // iterations
+  std::vector<Vec3> targets_;                // of every corner of a face
+  std::vector<Vec3> normals_;                // of the surface
 
   /// Where a vertex was when it looked for the plane that touches the surface near it.
   struct Touch {
@@ -124,7 +147,10 @@ Smoother::Smoother(Extraction& extraction, const Mesh& surface, const Graph& gra
       context_(context),
       placement_(extraction, surface, graph, features, context),
       around_(vertex_faces(mesh_, context)),
-      corners_(around_.faces.size()) {
+      corners_(around_.faces.size()),
+      batches_(batches_of(mesh_.faces,
+                          std::views::iota(Index{0}, static_cast<Index>(mesh_.faces.size())))),
+      targets_(mesh_.faces.corners().size()) {
   for_vertices([&](std::size_t v) {
     for (Index k = around_.offsets[v]; k < around_.offsets[v + 1]; ++k) {
       const auto face = std::as_const(mesh_.faces)[around_.faces[k]];
@@ -180,23 +206,27 @@ void Smoother::look_up_sizes() {
       [&](std::size_t v) { sizes_.values[v] = options_.relative_size[extraction_.nodes[v]]; });
 }
 
-void Smoother::fit_polygons(float side) {
-  targets_.resize(mesh_.faces.corners().size());
-  const auto evenness = static_cast<float>(options_.evenness);
-  context_.for_ranges(mesh_.faces.size(), grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t f = begin; f < end; ++f) {
-      const auto face = std::as_const(mesh_.faces)[f];
-      float relative = 0;
-      Vec3 upward = Vec3::Zero();
-      for (const Index v : face) {
-        relative += sizes_[v];
-        upward += normals_[v];
-      }
-      relative /= static_cast<float>(face.size());
-      fit_regular_polygon(face, mesh_.positions, {upward, relative * side, evenness},
-                          {targets_.data() + mesh_.faces.first(f), face.size()});
-    }
+std::vector<Index> Smoother::fit_polygons(const std::vector<std::vector<Index>>& batches,
+                                          float side) {
+  const PolygonFit fit{side, static_cast<float>(options_.evenness), sizes_};
+  std::vector<std::vector<Index>> folded(batches.size());
+  context_.for_ranges(batches.size(), 1, [&](std::size_t k, std::size_t) {
+    fit_regular_polygons(mesh_, batches[k], normals_, fit, targets_, folded[k]);
   });
+  std::vector<Index> all;
+  for (const auto& some : folded) all.insert(all.end(), some.begin(), some.end());
+  return all;
+}
+
+void Smoother::unfold(const std::vector<Index>& folded, float side) {
+  std::vector<Index> changed;  // faces
+  for (const Index v : meshgrain::unfold(extraction_, around_, placement_, normals_, folded)) {
+    previous_[v] = mesh_.positions[v];
+    touches_[v] = {};
+    changed.insert(changed.end(), around_[v].begin(), around_[v].end());
+  }
+  sort_unique(changed);
+  fit_polygons(batches_of(mesh_.faces, changed), side);
 }
 
 Vec3 Smoother::mean_target(Index v) const {
@@ -225,13 +255,8 @@ void Smoother::iterate(int iterations, bool put_on) {
       look_up_sizes();
       side = mean_side(mesh_, sizes_, context_);
     }
-    if (may_look && iteration > 0) {
-      for (const Index v : unfold(extraction_, around_, placement_, normals_, context_)) {
-        previous_[v] = mesh_.positions[v];
-        touches_[v] = {};
-      }
-    }
-    fit_polygons(side);
+    const std::vector<Index> folded = fit_polygons(batches_, side);
+    if (may_look && iteration > 0) unfold(folded, side);
     placement_.note_ways(context_);
     move_vertices(
         [&](Index v) {

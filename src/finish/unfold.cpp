@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "finish/face_shape.h"
-#include "util/collect.h"
 #include "util/sort_unique.h"
 
 namespace meshgrain {
@@ -16,20 +15,6 @@ class Unfolding {
   Unfolding(Extraction& extraction, const VertexFaces& around, Placement& placement,
             std::vector<Vec3>& normals)
       : mesh_(extraction.mesh), around_(around), placement_(placement), normals_(normals) {}
-
-  /// Whether a face is turned over, reflex or has an edge without length.
-  bool is_folded(Index f) const {
-    const auto face = std::as_const(mesh_.faces)[f];
-    const Vec3 up = upward(face);
-    Vec3 back = mesh_.positions[face.back()] - mesh_.positions[face[0]];
-    for (std::size_t k = 0; k < face.size(); ++k) {
-      const Vec3& next = mesh_.positions[face[k + 1 < face.size() ? k + 1 : 0]];
-      const Vec3 ahead = next - mesh_.positions[face[k]];
-      if (!(ahead.cross(back).dot(up) > 0)) return true;
-      back = -ahead;
-    }
-    return false;
-  }
 
   /// Puts v between its neighbours, on the side where one of them is. Returns whether that unfolds
   /// something; else v stays.
@@ -101,19 +86,10 @@ class Unfolding {
 }  // namespace
 
 std::vector<Index> unfold(Extraction& extraction, const VertexFaces& around, Placement& placement,
-                          std::vector<Vec3>& normals, const Context& context) {
+                          std::vector<Vec3>& normals, const std::vector<Index>& folded) {
   Unfolding unfolding(extraction, around, placement, normals);
-  const Mesh& mesh = extraction.mesh;
-  const auto folded = collect<Index>(
-      mesh.faces.size(),
-      [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
-        for (auto f = static_cast<Index>(begin); f < end; ++f) {
-          if (unfolding.is_folded(f)) found.push_back(f);
-        }
-      },
-      context);
   std::vector<Index> moved;
-  for (const Index v : vertices_of(mesh, folded)) {
+  for (const Index v : vertices_of(extraction.mesh, folded)) {
     if (unfolding.bring_back(v)) moved.push_back(v);
   }
   return moved;
