@@ -55,7 +55,7 @@ struct RemeshOptions {
   /// of its diagonal stays whole.
   Symmetry symmetry;
   CurvatureAlignment curvature;
-  int smoothing = 72;     ///< Iterations of smooth() (0: only put onto the surface).
+  int smoothing = 32;     ///< Iterations of smooth() (0: only put onto the surface).
   bool manifold = false;  ///< Drop what is not manifold.
   /// Of meshes: the border's vertices stay exactly where they are, and its edges as they are, so
   /// that the result can be sewn to what lay beside the input.

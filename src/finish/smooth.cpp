@@ -106,6 +106,13 @@ class Smoother {
   void unfold(const std::vector<Index>& folded, float side);
   Vec3 mean_target(Index v) const;
 
+  /// How far vertices go, in ways to the mean of their targets, and which share of their last step
+  /// they take again.
+  struct Step {
+    float length, momentum;
+  };
+  Step step() const;
+
   Extraction& extraction_;
   Mesh& mesh_;
   const Graph& graph_;
@@ -235,18 +242,25 @@ Vec3 Smoother::mean_target(Index v) const {
   return sum / static_cast<float>(around_[v].size());
 }
 
-void Smoother::iterate(int iterations, bool put_on) {
+Smoother::Step Smoother::step() const {
   // Each step goes on in part where the last one went (Polyak's heavy ball): faults that reach far
   // then fade in as many iterations as they are edges wide, rather than in the square of that.
-  constexpr float most_momentum = 0.9f;
+  // Fitted polygons never overshoot, so that steps may be up to 2 (1 + momentum) times as long.
+  constexpr Step far{3, 0.84f}, settling{1, 0.4f};
+  constexpr int last = 4;
+  if (done_ >= options_.iterations - last) return settling;
+  if (done_ >= options_.slow_start) return far;
+  const float share = static_cast<float>(done_) / static_cast<float>(options_.slow_start);
+  return {1 + share * (far.length - 1), share * far.momentum};
+}
+
+void Smoother::iterate(int iterations, bool put_on) {
   constexpr int between_looks = 4;  // at sizes, and at lines
   std::vector<Vec3> next(mesh_.positions.size());
   float side = 0;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     context_.progress("smoothing", static_cast<double>(iteration) / iterations);
-    const float momentum = done_ < options_.slow_start ? most_momentum * static_cast<float>(done_) /
-                                                             static_cast<float>(options_.slow_start)
-                                                       : most_momentum;
+    const auto [length, momentum] = step();
     ++done_;
     const bool look = iteration % between_looks == 0;
     const bool may_look = iteration % 2 == 0;  // at the surface
@@ -262,7 +276,7 @@ void Smoother::iterate(int iterations, bool put_on) {
         [&](Index v) {
           const Vec3& p = mesh_.positions[v];
           next[v] = p + momentum * (p - previous_[v]);
-          if (!around_[v].empty()) next[v] += mean_target(v) - p;
+          if (!around_[v].empty()) next[v] += length * (mean_target(v) - p);
           if (exactly || !placement_.is_free(v)) {
             next[v] = placement_.slide(next[v], v);
             if (look) normals_[v] = placement_.normal(v);

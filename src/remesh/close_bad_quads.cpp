@@ -21,7 +21,7 @@ namespace meshgrain {
 namespace {
 
 constexpr float good = 0.1f;    // a scaled Jacobian
-constexpr int iterations = 24;  // of smoothing a piece
+constexpr int iterations = 12;  // of smoothing a piece
 // How large the pieces are, in rings of faces around the bad one, and in how many ways it is closed
 // there.
 constexpr struct {

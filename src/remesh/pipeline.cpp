@@ -436,7 +436,7 @@ void Pipeline::smooth_faces() {
     finish_borders();
     SmoothOptions smoothing;
     smoothing.iterations = options_.smoothing;
-    if (has_thin_limbs_) smoothing.slow_start = 12;
+    if (has_thin_limbs_) smoothing.slow_start = 6;
     // The more regular, the more the grid must stretch. Triangles of one size are regular; the
     // triangles among quads are smaller than these.
     if (options_.faces == OutputFaces::quads) {
