@@ -416,8 +416,10 @@ TEST(Finish, AVertexHoldsOnlyTheEndFarthestFromIt) {
   triangle.mesh.positions = {Vec3(0.1f, 0, 0), Vec3(-0.1f, 0.1f, 0), Vec3(-0.1f, -0.1f, 0)};
   triangle.mesh.faces.push_back(std::array<Index, 3>{0, 1, 2});
   for (const Vec3& p : triangle.mesh.positions) triangle.nodes.push_back(nearest(plate, p));
-  const std::vector<Reach> ends = find_bare_ends(triangle, vertex_faces(triangle.mesh),
-                                                 build_graph(plate), EdgeLength(0.2f), Context());
+  const VertexFaces around = vertex_faces(triangle.mesh);
+  const Graph graph = build_graph(plate);
+  const Context context;
+  const std::vector<Reach> ends = BareEnds(triangle, around, graph, context).find(EdgeLength(0.2f));
   ASSERT_EQ(ends.size(), 3u);
   std::vector<Index> vertices;
   for (const Reach& end : ends) {

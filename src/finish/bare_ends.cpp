@@ -1,24 +1,16 @@
 #include "finish/bare_ends.h"
 
 #include <algorithm>
-#include <iterator>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 #include "graph/spread.h"
 #include "util/collect.h"
+#include "util/sort_unique.h"
 #include "util/triangle.h"
 
 namespace meshgrain {
 namespace {
-
-/// The nodes of a graph by their way to the nearest vertex of a mesh.
-struct Ways {
-  std::vector<float> length;
-  std::vector<Index> vertex;  // the nearest
-  std::vector<Index> before;  // the node before on the way from there, or no_index
-};
 
 /// The vertex of the mesh to which none of its neighbours is nearer, on the way from `vertex`.
 Index walk_to_nearest(const Vec3& p, const Mesh& mesh, const VertexFaces& around, Index vertex) {
@@ -35,84 +27,6 @@ Index walk_to_nearest(const Vec3& p, const Mesh& mesh, const VertexFaces& around
     }
   }
   return vertex;
-}
-
-/// Straight ways of the nodes that have a vertex within reach on their side of the surface, not yet
-/// the nearest. It is looked for from where the node before found its own, else from the vertices
-/// with the nodes just before and after: near in a space-filling order, near in space.
-Ways straight_ways(const Extraction& extraction, const VertexFaces& around, const Graph& graph,
-                   const EdgeLength& reach, const Context& context) {
-  const std::size_t n = graph.size();
-  Ways ways{std::vector<float>(n, std::numeric_limits<float>::infinity()),
-            std::vector<Index>(n, no_index), std::vector<Index>(n, no_index)};
-  struct Place {
-    Index node, vertex;
-    bool operator<(const Place& o) const {
-      return std::tie(node, vertex) < std::tie(o.node, o.vertex);
-    }
-  };
-  std::vector<Place> places;
-  for (Index v = 0; v < extraction.nodes.size(); ++v) places.push_back({extraction.nodes[v], v});
-  std::sort(places.begin(), places.end());
-  if (places.empty()) return ways;
-  constexpr std::size_t grain = 4096;
-  context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
-    auto after =
-        std::lower_bound(places.begin(), places.end(), Place{static_cast<Index>(begin), 0});
-    for (auto i = static_cast<Index>(begin); i < end; ++i) {
-      while (after != places.end() && after->node < i) ++after;
-      const Vec3& p = graph.positions[i];
-      const auto is_reached = [&](Index v) {
-        const float length = (p - extraction.mesh.positions[v]).norm();
-        if (length > reach[i]) return false;
-        if (graph.normals[i].dot(graph.normals[extraction.nodes[v]]) <= 0) return false;
-        ways.length[i] = length;
-        ways.vertex[i] = v;
-        return true;
-      };
-      const auto reached_from = [&](Index start) {
-        return is_reached(start) || is_reached(walk_to_nearest(p, extraction.mesh, around, start));
-      };
-      if (i > begin && ways.vertex[i - 1] != no_index && reached_from(ways.vertex[i - 1])) continue;
-      if (after != places.end() && reached_from(after->vertex)) continue;
-      if (after != places.begin()) reached_from(std::prev(after)->vertex);
-    }
-  });
-  return ways;
-}
-
-/// Goes on over the graph to the nodes that no vertex reaches, from those beside them.
-void go_on(Ways& ways, const Extraction& extraction, const VertexFaces& around, const Graph& graph,
-           const Context& context) {
-  const auto beside = collect<Index>(
-      graph.size(),
-      [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
-        for (auto i = static_cast<Index>(begin); i < end; ++i) {
-          if (ways.vertex[i] == no_index) continue;
-          const auto neighbors = graph.neighbors_of(i);
-          if (std::any_of(neighbors.begin(), neighbors.end(),
-                          [&](Index j) { return ways.vertex[j] == no_index; })) {
-            found.push_back(i);
-          }
-        }
-      },
-      context);
-  std::vector<std::pair<float, Index>> sources;
-  for (const Index i : beside) {
-    const Vec3& p = graph.positions[i];
-    ways.vertex[i] = walk_to_nearest(p, extraction.mesh, around, ways.vertex[i]);
-    ways.length[i] = (p - extraction.mesh.positions[ways.vertex[i]]).norm();
-    sources.push_back({ways.length[i], i});
-  }
-  const auto lower = [&](Index i, Index j) {
-    const float farther = ways.length[i] + (graph.positions[j] - graph.positions[i]).norm();
-    if (farther >= ways.length[j]) return false;
-    ways.length[j] = farther;
-    ways.vertex[j] = ways.vertex[i];
-    ways.before[j] = i;
-    return true;
-  };
-  spread(graph, ways.length, sources, 1, lower, context);
 }
 
 /// The distance from a point to the faces around a vertex and its neighbours.
@@ -135,25 +49,97 @@ float distance_to_star(const Vec3& p, const Mesh& mesh, const VertexFaces& aroun
 
 }  // namespace
 
-std::vector<Reach> find_bare_ends(const Extraction& extraction, const VertexFaces& around,
-                                  const Graph& graph, const EdgeLength& reach,
-                                  const Context& context) {
-  Ways ways = straight_ways(extraction, around, graph, reach, context);
-  go_on(ways, extraction, around, graph, context);
+BareEnds::BareEnds(const Extraction& extraction, const VertexFaces& around, const Graph& graph,
+                   const Context& context)
+    : extraction_(extraction),
+      around_(around),
+      graph_(graph),
+      context_(context),
+      vertex_(graph.size(), no_index) {
+  // At first the vertex just before in the order of the nodes: near in a space-filling order, near
+  // in space.
+  for (Index v = 0; v < extraction.nodes.size(); ++v) vertex_[extraction.nodes[v]] = v;
+  Index last = extraction.nodes.empty() ? no_index : 0;
+  for (Index& v : vertex_) last = v = v == no_index ? last : v;
+}
+
+std::vector<Index> BareEnds::not_reached(const EdgeLength& reach) {
+  const std::vector<Vec3>& places = extraction_.mesh.positions;
+  return collect<Index>(
+      vertex_.size(),
+      [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
+        Index last = vertex_[begin];
+        for (auto i = static_cast<Index>(begin); i < end; ++i) {
+          const Vec3& p = graph_.positions[i];
+          const auto is_reached = [&](Index v) {
+            if ((p - places[v]).squaredNorm() > reach[i] * reach[i]) return false;
+            if (graph_.normals[i].dot(graph_.normals[extraction_.nodes[v]]) <= 0) return false;
+            last = vertex_[i] = v;
+            return true;
+          };
+          const auto is_reached_from = [&](Index v) {
+            return is_reached(walk_to_nearest(p, extraction_.mesh, around_, v));
+          };
+          const Index own = vertex_[i], before = last;
+          if (is_reached(own) || is_reached(before) || is_reached_from(before) ||
+              is_reached_from(own)) {
+            continue;
+          }
+          found.push_back(i);
+        }
+      },
+      context_);
+}
+
+/// Ways over the graph to the nodes that no vertex reaches, from those beside them.
+void BareEnds::find_ways(const std::vector<Index>& bare) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  length_.assign(graph_.size(), 0);
+  before_.assign(graph_.size(), no_index);
+  for (const Index i : bare) length_[i] = infinity;
+  std::vector<Index> beside;
+  for (const Index i : bare) {
+    for (const Index j : graph_.neighbors_of(i)) {
+      if (length_[j] == 0) beside.push_back(j);
+    }
+  }
+  sort_unique(beside);
+  std::vector<std::pair<float, Index>> sources;
+  for (const Index i : beside) {
+    const Vec3& p = graph_.positions[i];
+    vertex_[i] = walk_to_nearest(p, extraction_.mesh, around_, vertex_[i]);
+    length_[i] = (p - extraction_.mesh.positions[vertex_[i]]).norm();
+    sources.push_back({length_[i], i});
+  }
+  const auto lower = [&](Index i, Index j) {
+    const float farther = length_[i] + (graph_.positions[j] - graph_.positions[i]).norm();
+    if (farther >= length_[j]) return false;
+    length_[j] = farther;
+    vertex_[j] = vertex_[i];
+    before_[j] = i;
+    return true;
+  };
+  spread(graph_, length_, sources, 1, lower, context_);
+}
+
+std::vector<Reach> BareEnds::find(const EdgeLength& reach) {
+  const std::vector<Index> bare = not_reached(reach);
+  if (bare.empty()) return {};
+  find_ways(bare);
   struct Tip {
     float distance;
     Index node;
   };
   std::vector<Tip> tips;
-  for (Index i = 0; i < graph.size(); ++i) {
-    if (!(ways.length[i] > reach[i]) || ways.vertex[i] == no_index) continue;
-    const auto neighbors = graph.neighbors_of(i);
+  for (const Index i : bare) {
+    if (!(length_[i] > reach[i]) || length_[i] == std::numeric_limits<float>::infinity()) continue;
+    const auto neighbors = graph_.neighbors_of(i);
     if (std::any_of(neighbors.begin(), neighbors.end(),
-                    [&](Index j) { return ways.length[j] > ways.length[i]; })) {
+                    [&](Index j) { return length_[j] > length_[i]; })) {
       continue;
     }
     const float distance =
-        distance_to_star(graph.positions[i], extraction.mesh, around, ways.vertex[i]);
+        distance_to_star(graph_.positions[i], extraction_.mesh, around_, vertex_[i]);
     if (distance > reach[i]) tips.push_back({distance, i});
   }
   std::sort(tips.begin(), tips.end(), [](const Tip& a, const Tip& b) {
@@ -161,25 +147,25 @@ std::vector<Reach> find_bare_ends(const Extraction& extraction, const VertexFace
   });
   std::vector<Reach> result;
   for (const Tip& tip : tips) {
-    const Vec3& end = graph.positions[tip.node];
+    const Vec3& end = graph_.positions[tip.node];
     const float radius = reach[tip.node];
     // A vertex can hold only one end: the one farthest away.
     if (std::ranges::any_of(result, [&](const Reach& other) {
-          return other.vertex == ways.vertex[tip.node] || (end - other.tip).norm() < 2 * radius;
+          return other.vertex == vertex_[tip.node] || (end - other.tip).norm() < 2 * radius;
         })) {
       continue;
     }
     // Back from the tip until it is far enough.
-    const auto distance = [&](Index i) { return (graph.positions[i] - end).norm(); };
+    const auto distance = [&](Index i) { return (graph_.positions[i] - end).norm(); };
     Index node = tip.node, outer = tip.node;
-    while (distance(node) < radius && ways.before[node] != no_index) {
-      outer = std::exchange(node, ways.before[node]);
+    while (distance(node) < radius && before_[node] != no_index) {
+      outer = std::exchange(node, before_[node]);
     }
     const float under = distance(node) - radius, over = radius - distance(outer);
     const float share = under > 0 ? under / (under + over) : 0.0f;
     result.push_back(
-        {ways.vertex[tip.node], share < 0.5f ? node : outer,
-         graph.positions[node] + share * (graph.positions[outer] - graph.positions[node]), end,
+        {vertex_[tip.node], share < 0.5f ? node : outer,
+         graph_.positions[node] + share * (graph_.positions[outer] - graph_.positions[node]), end,
          radius});
   }
   return result;

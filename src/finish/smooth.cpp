@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <ranges>
 #include <utility>
 
@@ -128,6 +129,7 @@ class Smoother {
   int done_ = 0;                             // iterations
   std::vector<Vec3> targets_;                // of every corner of a face
   std::vector<Vec3> normals_;                // of the surface
+  std::optional<BareEnds> ends_;
 
   /// Where a vertex was when it looked for the plane that touches the surface near it.
   struct Touch {
@@ -294,11 +296,12 @@ void Smoother::iterate(int iterations, bool put_on) {
 
 void Smoother::hold_ends() {
   if (!nodes_are_vertices_ || options_.is_part) return;
+  if (!ends_) ends_.emplace(extraction_, around_, graph_, context_);
   constexpr float share = 0.9f;
   const float side = mean_side(mesh_, sizes_, context_);
   EdgeLength reach = options_.relative_size;
   for (float& length : reach.values) length *= share * side;
-  for (const Reach& end : find_bare_ends(extraction_, around_, graph_, reach, context_)) {
+  for (const Reach& end : ends_->find(reach)) {
     if (!placement_.is_free(end.vertex) && !placement_.is_tethered(end.vertex)) continue;
     placement_.tether(end.vertex, end.position, end.node, end.tip, end.radius);
     previous_[end.vertex] = end.position;
