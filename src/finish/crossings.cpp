@@ -233,7 +233,7 @@ FaceGrid::FaceGrid(const Mesh& mesh, const Context& context) : boxes_(mesh.faces
     lows_[f] = cell(boxes_[f].min());
     highs_[f] = cell(boxes_[f].max());
   }
-  const int bits = std::bit_width(count);
+  const auto bits = static_cast<int>(std::bit_width(count));
   const auto for_each_entry = [&](const auto& body) {
     for (auto f = static_cast<Index>(count); f-- > 0;) {
       for (auto x = lows_[f][0]; x <= highs_[f][0]; ++x) {

@@ -27,7 +27,7 @@ std::vector<MirrorPlane> find_symmetry(const Mesh& input, const Symmetry& symmet
     if (plane.mismatch <= tolerance) {
       planes.push_back(plane);
     } else if (symmetry.axes[axis]) {
-      notes.push_back(std::string("not symmetric across ") + "xyz"[axis]);
+      notes.emplace_back("not symmetric across ").push_back("xyz"[axis]);
     }
   }
   if (!symmetry.automatic) return planes;
@@ -37,7 +37,7 @@ std::vector<MirrorPlane> find_symmetry(const Mesh& input, const Symmetry& symmet
   // One is enough: every plane is one more line that edges must follow.
   const auto best = std::min_element(planes.begin(), planes.end(), less);
   if (best != planes.end()) return {*best};
-  notes.push_back("not symmetric across x, y or z");
+  notes.emplace_back("not symmetric across x, y or z");
   return {};
 }
 
@@ -82,7 +82,7 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const Context& 
   RemeshResult result = remesh(std::move(input), options, context);
   for (const MirrorPlane& plane : planes) {
     add_mirror_image(result.mesh, plane.axis, 0.2 * edge_lengths(result.mesh, context).mean);
-    notes.push_back(std::string("made symmetric across ") + "xyz"[plane.axis]);
+    notes.emplace_back("made symmetric across ").push_back("xyz"[plane.axis]);
   }
   result.report.input_vertices = vertices;
   result.report.input_faces = faces;
