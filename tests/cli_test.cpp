@@ -221,7 +221,7 @@ TEST_F(Cli, SolverOptionsChangeTheResult) {
   sample("bracket", "in.obj");
   const std::string plain = bytes("-f 500");
   EXPECT_EQ(bytes("-f 500 --solver blocks --energy extrinsic --graph vertices --weights "
-                  "uniform --sizing uniform --orientation-energy extrinsic -S 72 -k 10"),
+                  "uniform --sizing uniform --orientation-energy extrinsic -S 32 -k 10"),
             plain);
   for (const char* options :
        {"--solver random", "--solver jacobi", "--sweeps 2", "--sweeps 6", "--single-level", "-i",

@@ -398,7 +398,8 @@ TEST(Finish, VerticesComeBackFromTheOtherSide) {
     leg.mesh.faces.push_back(std::array<Index, 4>{k, next, next + around_leg, k + around_leg});
   }
   const FeatureLines none;
-  Placement placement(leg, surface, graph, none, Context());
+  const VertexFaces around_surface = vertex_faces(surface);
+  Placement placement(leg, surface, around_surface, graph, none);
   std::vector<Vec3> normals;
   for (Index v = 0; v < leg.nodes.size(); ++v) normals.push_back(placement.normal(v));
   const VertexFaces around = vertex_faces(leg.mesh);
@@ -416,10 +417,8 @@ TEST(Finish, AVertexHoldsOnlyTheEndFarthestFromIt) {
   triangle.mesh.positions = {Vec3(0.1f, 0, 0), Vec3(-0.1f, 0.1f, 0), Vec3(-0.1f, -0.1f, 0)};
   triangle.mesh.faces.push_back(std::array<Index, 3>{0, 1, 2});
   for (const Vec3& p : triangle.mesh.positions) triangle.nodes.push_back(nearest(plate, p));
-  const VertexFaces around = vertex_faces(triangle.mesh);
-  const Graph graph = build_graph(plate);
-  const Context context;
-  const std::vector<Reach> ends = BareEnds(triangle, around, graph, context).find(EdgeLength(0.2f));
+  const std::vector<Reach> ends = find_bare_ends(triangle, vertex_faces(triangle.mesh),
+                                                 build_graph(plate), EdgeLength(0.2f), Context());
   ASSERT_EQ(ends.size(), 3u);
   std::vector<Index> vertices;
   for (const Reach& end : ends) {

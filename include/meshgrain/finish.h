@@ -22,8 +22,8 @@ void take_dual(Extraction& extraction);
 std::size_t make_manifold(Extraction& extraction);
 
 struct SmoothOptions {
-  int iterations = 32;
-  /// Over how many of them steps gain their full length and momentum. With all of it from the first
+  int iterations = 32;  ///< Small meshes get more, with shorter steps.
+  /// Over how many of them steps gain their full momentum. With all of it from the first, longest
   /// steps on, thin limbs of few faces can swing through themselves.
   int slow_start = 0;
   /// How strongly faces are drawn to one size, 0 to 1: areas become more even, angles a little

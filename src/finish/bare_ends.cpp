@@ -1,6 +1,8 @@
 #include "finish/bare_ends.h"
 
 #include <algorithm>
+#include <compare>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -47,45 +49,66 @@ float distance_to_star(const Vec3& p, const Mesh& mesh, const VertexFaces& aroun
   return std::sqrt(least);
 }
 
-}  // namespace
+class BareEnds {
+ public:
+  BareEnds(const Extraction& extraction, const VertexFaces& around, const Graph& graph,
+           const Context& context)
+      : extraction_(extraction),
+        around_(around),
+        graph_(graph),
+        context_(context),
+        vertex_(graph.size(), no_index) {}
 
-BareEnds::BareEnds(const Extraction& extraction, const VertexFaces& around, const Graph& graph,
-                   const Context& context)
-    : extraction_(extraction),
-      around_(around),
-      graph_(graph),
-      context_(context),
-      vertex_(graph.size(), no_index) {
-  // At first the vertex just before in the order of the nodes: near in a space-filling order, near
-  // in space.
-  for (Index v = 0; v < extraction.nodes.size(); ++v) vertex_[extraction.nodes[v]] = v;
-  Index last = extraction.nodes.empty() ? no_index : 0;
-  for (Index& v : vertex_) last = v = v == no_index ? last : v;
-}
+  std::vector<Reach> find(const EdgeLength& reach);
+
+ private:
+  /// The nodes that have no vertex within reach on their side of the surface.
+  std::vector<Index> not_reached(const EdgeLength& reach);
+  void find_ways(const std::vector<Index>& bare);
+
+  const Extraction& extraction_;
+  const VertexFaces& around_;
+  const Graph& graph_;
+  const Context& context_;
+  // Of each node:
+  std::vector<Index> vertex_;  // one that reaches it; of those to which ways go the nearest
+  std::vector<float> length_;  // of the way; 0 where none is needed
+  std::vector<Index> before_;  // the node before on the way, or no_index
+};
 
 std::vector<Index> BareEnds::not_reached(const EdgeLength& reach) {
-  const std::vector<Vec3>& places = extraction_.mesh.positions;
+  struct Place {
+    Index node, vertex;
+    auto operator<=>(const Place&) const = default;
+  };
+  const std::vector<Vec3>& positions = extraction_.mesh.positions;
+  std::vector<Place> places;
+  for (Index v = 0; v < positions.size(); ++v) places.push_back({extraction_.nodes[v], v});
+  std::ranges::sort(places);
   return collect<Index>(
       vertex_.size(),
       [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
-        Index last = vertex_[begin];
+        auto after = std::ranges::lower_bound(places, Place{static_cast<Index>(begin), 0});
+        Index before = no_index;  // the vertex that reaches the node before
         for (auto i = static_cast<Index>(begin); i < end; ++i) {
+          while (after != places.end() && after->node < i) ++after;
           const Vec3& p = graph_.positions[i];
           const auto is_reached = [&](Index v) {
-            if ((p - places[v]).squaredNorm() > reach[i] * reach[i]) return false;
+            if ((p - positions[v]).squaredNorm() > reach[i] * reach[i]) return false;
             if (graph_.normals[i].dot(graph_.normals[extraction_.nodes[v]]) <= 0) return false;
-            last = vertex_[i] = v;
+            before = vertex_[i] = v;
             return true;
           };
           const auto is_reached_from = [&](Index v) {
-            return is_reached(walk_to_nearest(p, extraction_.mesh, around_, v));
+            return is_reached(v) || is_reached(walk_to_nearest(p, extraction_.mesh, around_, v));
           };
-          const Index own = vertex_[i], before = last;
-          if (is_reached(own) || is_reached(before) || is_reached_from(before) ||
-              is_reached_from(own)) {
-            continue;
-          }
+          // From that of the node before, else from those with the nodes just after and before:
+          // near in a space-filling order, near in space.
+          if (before != no_index && is_reached_from(before)) continue;
+          if (after != places.end() && is_reached_from(after->vertex)) continue;
+          if (after != places.begin() && is_reached_from(std::prev(after)->vertex)) continue;
           found.push_back(i);
+          before = no_index;
         }
       },
       context_);
@@ -169,6 +192,14 @@ std::vector<Reach> BareEnds::find(const EdgeLength& reach) {
          radius});
   }
   return result;
+}
+
+}  // namespace
+
+std::vector<Reach> find_bare_ends(const Extraction& extraction, const VertexFaces& around,
+                                  const Graph& graph, const EdgeLength& reach,
+                                  const Context& context) {
+  return BareEnds(extraction, around, graph, context).find(reach);
 }
 
 }  // namespace meshgrain

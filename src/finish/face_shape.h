@@ -10,6 +10,10 @@
 
 namespace meshgrain {
 
+/// Of fewer faces most are large beside the bends of what they cover, and nothing takes long: what
+/// saves time because a face is about flat is left there.
+inline constexpr std::size_t few_faces = 1500;
+
 /// Along the normal of a face, as long as the face is large.
 inline Vec3 area_vector(std::span<const Index> face, const std::vector<Vec3>& positions) {
   Vec3 sum = Vec3::Zero();

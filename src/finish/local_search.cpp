@@ -268,10 +268,10 @@ bool LocalSearch::improve(Index v) {
   float least = before;
   // Most targets are far from being better: that is seen before they are put on the surface.
   constexpr float far = 1.02f;
-  const bool is_free = placement_.is_free(v);
+  const bool is_seen = placement_.is_free(v) && mesh_.faces.size() >= few_faces;
   const auto attempt = [&](const Vec3& target) {
     mesh_.positions[v] = target;
-    if (is_free && shape_lack(v, star.upward, far * least) >= far * least) return;
+    if (is_seen && shape_lack(v, star.upward, far * least) >= far * least) return;
     placement_.set_seed(v, best_seed);
     mesh_.positions[v] = placement_.place(target, v);
     const float now = lack(v, star, least);

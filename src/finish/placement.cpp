@@ -4,10 +4,10 @@
 
 namespace meshgrain {
 
-Placement::Placement(Extraction& extraction, const Mesh& surface, const Graph& graph,
-                     const FeatureLines& lines, const Context& context)
+Placement::Placement(Extraction& extraction, const Mesh& surface, const VertexFaces& around_surface,
+                     const Graph& graph, const FeatureLines& lines)
     : extraction_(extraction),
-      projector_(surface, graph, context),
+      projector_(surface, around_surface, graph),
       rails_(extraction, lines),
       chords_(extraction.mesh, extraction.line_edges, rails_),
       tether_(extraction.mesh.positions.size(), no_index) {

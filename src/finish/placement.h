@@ -15,9 +15,9 @@ namespace meshgrain {
 /// lines along these, corners nowhere.
 class Placement {
  public:
-  /// All of the first four must outlive this.
-  Placement(Extraction& extraction, const Mesh& surface, const Graph& graph,
-            const FeatureLines& lines, const Context& context);
+  /// All must outlive this.
+  Placement(Extraction& extraction, const Mesh& surface, const VertexFaces& around_surface,
+            const Graph& graph, const FeatureLines& lines);
 
   /// The place nearest to `p` that vertex v may have. Remembers in Extraction::nodes where that is,
   /// so that calls for the same vertex must not run at once.

@@ -13,11 +13,6 @@
 
 namespace meshgrain {
 
-Projector::Projector(const Mesh& surface, const Graph& graph, const Context& context)
-    : surface_(surface),
-      graph_(graph),
-      around_(surface.is_point_cloud() ? VertexFaces{} : vertex_faces(surface, context)) {}
-
 Vec3 Projector::nearest_around(const Vec3& p, Index vertex, Index& nearest_corner) const {
   Vec3 best = surface_.positions[vertex];
   float best_distance = (p - best).squaredNorm();
@@ -42,7 +37,7 @@ Vec3 Projector::nearest_around(const Vec3& p, Index vertex, Index& nearest_corne
 }
 
 Vec3 Projector::normal(Index vertex) const {
-  if (nodes_are_vertices()) return graph_.normals[vertex];
+  if (surface_.is_point_cloud()) return graph_.normals[vertex];
   Vec3 sum = Vec3::Zero();
   for (const Index f : around_[vertex]) {
     const auto face = surface_.faces[f];
@@ -101,7 +96,7 @@ Vec3 Projector::project(const Vec3& p, Index& seed) const {
 }
 
 Projector::Plane Projector::touch(const Vec3& p, Index& seed) const {
-  if (surface_.is_point_cloud() || !nodes_are_vertices()) {
+  if (surface_.is_point_cloud() || graph_.size() != surface_.positions.size()) {
     const Vec3 point = project(p, seed);
     return {point, normal(seed)};
   }

@@ -13,9 +13,10 @@ namespace meshgrain {
 /// No tree over the input is needed, and the walk stays on its own side of a thin wall.
 class Projector {
  public:
-  /// `surface` is a triangle mesh, or the point cloud that `graph` was built on; both must outlive
-  /// this.
-  Projector(const Mesh& surface, const Graph& graph, const Context& context);
+  /// `surface` is a triangle mesh, with the faces `around` its vertices, or the point cloud that
+  /// `graph` was built on; all must outlive this.
+  Projector(const Mesh& surface, const VertexFaces& around, const Graph& graph)
+      : surface_(surface), graph_(graph), around_(around) {}
 
   /// The point of the surface nearest to `p`. `seed` is where to start (a vertex of the surface),
   /// and becomes the one where the walk ended.
@@ -45,7 +46,6 @@ class Projector {
                               std::size_t most) const;
 
  private:
-  bool nodes_are_vertices() const { return graph_.size() == surface_.positions.size(); }
   /// Goes on to the nearest of the neighbours in the graph, while that is nearer to p.
   void walk_to_nearest(const Vec3& p, Index& seed) const;
   Vec3 nearest_around(const Vec3& p, Index vertex, Index& nearest_corner) const;
@@ -53,7 +53,7 @@ class Projector {
 
   const Mesh& surface_;
   const Graph& graph_;
-  VertexFaces around_;
+  const VertexFaces& around_;
 };
 
 }  // namespace meshgrain

@@ -1,3 +1,5 @@
+#include "finish/smooth.h"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -5,7 +7,6 @@
 #include <limits>
 #include <map>
 #include <numbers>
-#include <optional>
 #include <ranges>
 #include <utility>
 
@@ -18,8 +19,6 @@
 #include "finish/regular_polygon.h"
 #include "finish/unfold.h"
 #include "finish/untangle.h"
-#include "mesh/vertex_faces.h"
-#include "meshgrain/finish.h"
 #include "meshgrain/surface.h"
 #include "util/sort_unique.h"
 #include "util/sum.h"
@@ -79,8 +78,12 @@ std::vector<std::vector<Index>> batches_of(const Faces& faces, const Which& whic
 class Smoother {
  public:
   /// Puts all vertices onto the surface.
-  Smoother(Extraction& extraction, const Mesh& surface, const Graph& graph,
-           const FeatureLines& features, const SmoothOptions& options, const Context& context);
+  Smoother(Extraction& extraction, const Mesh& surface, const VertexFaces& around_surface,
+           const Graph& graph, const FeatureLines& features, const SmoothOptions& options,
+           const Context& context);
+
+  /// How many there are to be.
+  int iterations() const;
 
   /// `put_on`: exactly onto the surface, at the end.
   void iterate(int iterations, bool put_on);
@@ -127,9 +130,10 @@ class Smoother {
   EdgeLength sizes_{1.0f};                   // relative, of the vertices where they are
   std::vector<Vec3> previous_;               // positions, one iteration ago
   int done_ = 0;                             // iterations
-  std::vector<Vec3> targets_;                // of every corner of a face
-  std::vector<Vec3> normals_;                // of the surface
-  std::optional<BareEnds> ends_;
+  bool short_steps_;  // a mesh of few faces, large beside what they cover, could swing through
+                      // itself
+  std::vector<Vec3> targets_;  // of every corner of a face
+  std::vector<Vec3> normals_;  // of the surface
 
   /// Where a vertex was when it looked for the plane that touches the surface near it.
   struct Touch {
@@ -145,8 +149,8 @@ class Smoother {
   std::vector<Touch> touches_;
 };
 
-Smoother::Smoother(Extraction& extraction, const Mesh& surface, const Graph& graph,
-                   const FeatureLines& features, const SmoothOptions& options,
+Smoother::Smoother(Extraction& extraction, const Mesh& surface, const VertexFaces& around_surface,
+                   const Graph& graph, const FeatureLines& features, const SmoothOptions& options,
                    const Context& context)
     : extraction_(extraction),
       mesh_(extraction.mesh),
@@ -154,11 +158,12 @@ Smoother::Smoother(Extraction& extraction, const Mesh& surface, const Graph& gra
       nodes_are_vertices_(graph.size() == surface.positions.size()),
       options_(options),
       context_(context),
-      placement_(extraction, surface, graph, features, context),
+      placement_(extraction, surface, around_surface, graph, features),
       around_(vertex_faces(mesh_, context)),
       corners_(around_.faces.size()),
       batches_(batches_of(mesh_.faces,
                           std::views::iota(Index{0}, static_cast<Index>(mesh_.faces.size())))),
+      short_steps_(mesh_.faces.size() < few_faces),
       targets_(mesh_.faces.corners().size()) {
   for_vertices([&](std::size_t v) {
     for (Index k = around_.offsets[v]; k < around_.offsets[v + 1]; ++k) {
@@ -244,16 +249,23 @@ Vec3 Smoother::mean_target(Index v) const {
   return sum / static_cast<float>(around_[v].size());
 }
 
+int Smoother::iterations() const {
+  constexpr double more = 2.25;  // which need short steps to come as far
+  return short_steps_ ? static_cast<int>(more * options_.iterations) : options_.iterations;
+}
+
 Smoother::Step Smoother::step() const {
   // Each step goes on in part where the last one went (Polyak's heavy ball): faults that reach far
   // then fade in as many iterations as they are edges wide, rather than in the square of that.
   // Fitted polygons never overshoot, so that steps may be up to 2 (1 + momentum) times as long.
-  constexpr Step far{3, 0.84f}, settling{1, 0.4f};
+  constexpr Step short_step{1, 0.9f}, long_step{3, 0.84f}, settling{1, 0.4f};
   constexpr int last = 4;
-  if (done_ >= options_.iterations - last) return settling;
-  if (done_ >= options_.slow_start) return far;
-  const float share = static_cast<float>(done_) / static_cast<float>(options_.slow_start);
-  return {1 + share * (far.length - 1), share * far.momentum};
+  if (!short_steps_ && done_ >= options_.iterations - last) return settling;
+  Step step = short_steps_ ? short_step : long_step;
+  if (done_ < options_.slow_start) {
+    step.momentum *= static_cast<float>(done_) / static_cast<float>(options_.slow_start);
+  }
+  return step;
 }
 
 void Smoother::iterate(int iterations, bool put_on) {
@@ -296,12 +308,11 @@ void Smoother::iterate(int iterations, bool put_on) {
 
 void Smoother::hold_ends() {
   if (!nodes_are_vertices_ || options_.is_part) return;
-  if (!ends_) ends_.emplace(extraction_, around_, graph_, context_);
   constexpr float share = 0.9f;
   const float side = mean_side(mesh_, sizes_, context_);
   EdgeLength reach = options_.relative_size;
   for (float& length : reach.values) length *= share * side;
-  for (const Reach& end : ends_->find(reach)) {
+  for (const Reach& end : find_bare_ends(extraction_, around_, graph_, reach, context_)) {
     if (!placement_.is_free(end.vertex) && !placement_.is_tethered(end.vertex)) continue;
     placement_.tether(end.vertex, end.position, end.node, end.tip, end.radius);
     previous_[end.vertex] = end.position;
@@ -323,23 +334,31 @@ void Smoother::lift() {
 
 void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
             const SmoothOptions& options, const Context& context) {
+  const bool is_cloud = surface.is_point_cloud();
+  smooth(extraction, surface, is_cloud ? VertexFaces{} : vertex_faces(surface, context), graph,
+         options, context);
+}
+
+void smooth(Extraction& extraction, const Mesh& surface, const VertexFaces& around_surface,
+            const Graph& graph, const SmoothOptions& options, const Context& context) {
   FeatureLines border;
   if (options.features == nullptr && !surface.is_point_cloud()) {
     border = find_features(surface, {.creases = Creases::none, .align_border = false}, 0, context);
   }
   const FeatureLines& features = options.features != nullptr ? *options.features : border;
-  Smoother smoother(extraction, surface, graph, features, options, context);
+  Smoother smoother(extraction, surface, around_surface, graph, features, options, context);
   if (options.iterations == 0) return;
   // Even sizes draw the surface's ends in first of all, so that they show early.
   constexpr int hold_after[] = {1, 2, 4}, whole = 6;  // sixths of the iterations
+  const int iterations = smoother.iterations();
   int done = 0;
   for (const int sixths : hold_after) {
-    const int until = options.iterations * sixths / whole;
+    const int until = iterations * sixths / whole;
     smoother.iterate(until - done, false);
     smoother.hold_ends();
     done = until;
   }
-  smoother.iterate(options.iterations - done, true);
+  smoother.iterate(iterations - done, true);
   smoother.mend();
   smoother.lift();
 }

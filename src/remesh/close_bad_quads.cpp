@@ -16,6 +16,7 @@
 #include "extract/piece.h"
 #include "finish/crossings.h"
 #include "finish/face_shape.h"
+#include "finish/smooth.h"
 
 namespace meshgrain {
 namespace {
@@ -37,10 +38,11 @@ float scaled_jacobian(const Mesh& mesh, std::span<const Index> quad) {
 
 class Closing {
  public:
-  Closing(Extraction& whole, const Mesh& surface, const Graph& graph, SmoothOptions smoothing,
-          const Context& context)
+  Closing(Extraction& whole, const Mesh& surface, const VertexFaces& around_surface,
+          const Graph& graph, SmoothOptions smoothing, const Context& context)
       : whole_(whole),
         surface_(surface),
+        around_surface_(around_surface),
         graph_(graph),
         smoothing_(std::move(smoothing)),
         context_(context) {
@@ -135,7 +137,7 @@ class Closing {
       Extraction changed = collect_faces(parts.map, repair, parts.clusters, vertex);
       if (piece.faces.size() - changed.mesh.faces.size() > most) continue;
       --tries_left_;
-      smooth(changed, surface_, graph_, smoothing_, context_);
+      smooth(changed, surface_, around_surface_, graph_, smoothing_, context_);
       if (lack(changed) >= before) continue;
 
       std::vector<Index> sources(changed.mesh.positions.size(), no_index);
@@ -179,6 +181,7 @@ class Closing {
 
   Extraction& whole_;
   const Mesh& surface_;
+  const VertexFaces& around_surface_;
   const Graph& graph_;
   SmoothOptions smoothing_;
   const Context& context_;
@@ -188,9 +191,10 @@ class Closing {
 
 }  // namespace
 
-void close_bad_quads(Extraction& extraction, const Mesh& surface, const Graph& graph,
-                     SmoothOptions smoothing, std::size_t most, const Context& context) {
-  Closing(extraction, surface, graph, std::move(smoothing), context).run(most);
+void close_bad_quads(Extraction& extraction, const Mesh& surface, const VertexFaces& around_surface,
+                     const Graph& graph, SmoothOptions smoothing, std::size_t most,
+                     const Context& context) {
+  Closing(extraction, surface, around_surface, graph, std::move(smoothing), context).run(most);
 }
 
 }  // namespace meshgrain

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mesh/vertex_faces.h"
 #include "meshgrain/finish.h"
 
 namespace meshgrain {
@@ -12,7 +13,8 @@ namespace meshgrain {
 /// is not manifold is left alone.
 ///
 /// `smoothing`: what the mesh was smoothed with. At most `most` faces go.
-void close_bad_quads(Extraction& extraction, const Mesh& surface, const Graph& graph,
-                     SmoothOptions smoothing, std::size_t most, const Context& context);
+void close_bad_quads(Extraction& extraction, const Mesh& surface, const VertexFaces& around_surface,
+                     const Graph& graph, SmoothOptions smoothing, std::size_t most,
+                     const Context& context);
 
 }  // namespace meshgrain

@@ -12,12 +12,12 @@
 #include "extract/remove_strips.h"
 #include "features/lines_abreast.h"
 #include "field/transfer.h"
+#include "finish/smooth.h"
 #include "mesh/border.h"
 #include "mesh/long_edges.h"
 #include "mesh/refine_slivers.h"
 #include "meshgrain/clean.h"
 #include "meshgrain/error.h"
-#include "meshgrain/finish.h"
 #include "meshgrain/singularities.h"
 #include "meshgrain/statistics.h"
 #include "meshgrain/surface.h"
@@ -436,7 +436,7 @@ void Pipeline::smooth_faces() {
     finish_borders();
     SmoothOptions smoothing;
     smoothing.iterations = options_.smoothing;
-    if (has_thin_limbs_) smoothing.slow_start = 6;
+    if (has_thin_limbs_) smoothing.slow_start = 12;
     // The more regular, the more the grid must stretch. Triangles of one size are regular; the
     // triangles among quads are smaller than these.
     if (options_.faces == OutputFaces::quads) {
@@ -449,13 +449,14 @@ void Pipeline::smooth_faces() {
     smoothing.lift = options_.sizing.adaptive;
     smoothing.corners_stay = !borders_.empty();
     if (!is_cloud_ && nodes_are_vertices_) smoothing.features = &features_;
-    smooth(extraction_, surface_, graph(), smoothing, context_);
+    const VertexFaces around = is_cloud_ ? VertexFaces{} : vertex_faces(surface_, context_);
+    smooth(extraction_, surface_, around, graph(), smoothing, context_);
     // What is bad beside vertices that cannot move shows only now.
     if (!borders_.empty() && improve_border_faces(extraction_, options_.faces, context_)) {
-      smooth(extraction_, surface_, graph(), smoothing, context_);
+      smooth(extraction_, surface_, around, graph(), smoothing, context_);
     }
     if (options_.smoothing > 0 && posy_of(options_.faces) == 4) {
-      close_bad_quads(extraction_, surface_, graph(), std::move(smoothing),
+      close_bad_quads(extraction_, surface_, around, graph(), std::move(smoothing),
                       target_.spare_faces(extraction_.mesh), context_);
     }
   });

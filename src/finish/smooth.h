@@ -1,0 +1,13 @@
+#pragma once
+
+#include "mesh/vertex_faces.h"
+#include "meshgrain/finish.h"
+
+namespace meshgrain {
+
+/// As in meshgrain/finish.h, where the faces around each vertex of the surface are known; of a
+/// point cloud none are asked for.
+void smooth(Extraction& extraction, const Mesh& surface, const VertexFaces& around_surface,
+            const Graph& graph, const SmoothOptions& options, const Context& context);
+
+}  // namespace meshgrain
