@@ -78,6 +78,7 @@ std::size_t bytes(const Hierarchy& hierarchy) {
   std::size_t sum = 0;
   for (const Graph& level : hierarchy.levels) sum += bytes(level);
   for (const auto& parents : hierarchy.parents) sum += bytes_of(parents);
+  for (const Children& c : hierarchy.children) sum += bytes_of(c.offsets) + bytes_of(c.nodes);
   return sum;
 }
 

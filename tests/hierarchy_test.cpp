@@ -3,11 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <map>
 #include <numeric>
 
-#include "graph/for_each_child.h"
 #include "made_graph.h"
 #include "util/hash.h"
 
@@ -68,6 +66,13 @@ void expect_consistent(const Hierarchy& hierarchy) {
     const Graph &fine = hierarchy.levels[l], &coarse = hierarchy.levels[l + 1];
     const std::vector<Index>& parents = hierarchy.parents[l];
     ASSERT_EQ(parents.size(), fine.size());
+    ASSERT_EQ(hierarchy.children[l].size(), coarse.size());
+    ASSERT_EQ(hierarchy.children[l].nodes.size(), fine.size());
+    for (Index k = 0; k < coarse.size(); ++k) {
+      const auto children_of = hierarchy.children[l][k];
+      EXPECT_TRUE(std::ranges::is_sorted(children_of));
+      for (const Index i : children_of) EXPECT_EQ(parents[i], k);
+    }
     std::vector<double> areas(coarse.size(), 0);
     std::vector<Eigen::Vector3d> positions(coarse.size(), Eigen::Vector3d::Zero());
     std::vector<std::size_t> children(coarse.size(), 0);
@@ -182,21 +187,6 @@ TEST(Hierarchy, HasAboutLogarithmicallyManyLevels) {
   const double log2 = std::log2(static_cast<double>(hierarchy.levels[0].size()));
   EXPECT_LE(static_cast<double>(hierarchy.levels.size()), log2 + 2);
   EXPECT_GT(static_cast<double>(hierarchy.levels.size()), log2 / 2);
-}
-
-TEST(Hierarchy, ChildrenOfAParentAreVisitedInOrder) {
-  constexpr Index nodes = 50000, parents = 20000;
-  const auto near_in_order = [](Index i) { return (i / 5 * 2 + i % 7) % parents; };
-  const auto anyhow = [](Index i) { return static_cast<Index>(hash64(1, i) % parents); };
-  for (const auto& parent_of :
-       {std::function<Index(Index)>(near_in_order), std::function<Index(Index)>(anyhow)}) {
-    std::vector<Index> parent(nodes);
-    std::vector<std::vector<Index>> wanted(parents), found(parents);
-    for (Index i = 0; i < nodes; ++i) wanted[parent[i] = parent_of(i)].push_back(i);
-    for_each_child(
-        parent, [&](Index i, Index k) { found[k].push_back(i); }, Context(3));
-    EXPECT_EQ(found, wanted);
-  }
 }
 
 }  // namespace

@@ -1,10 +1,23 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "meshgrain/graph.h"
 
 namespace meshgrain {
+
+/// The nodes of one level, each with those of the next finer one that were merged into it, in
+/// increasing order. Numbered by their first children, which keeps the order along the curve.
+struct Children {
+  std::vector<Index> offsets;  ///< nodes + 1: where each one's children start.
+  std::vector<Index> nodes;
+
+  std::size_t size() const { return offsets.empty() ? 0 : offsets.size() - 1; }
+  std::span<const Index> operator[](std::size_t k) const {
+    return {nodes.data() + offsets[k], offsets[k + 1] - offsets[k]};
+  }
+};
 
 /// Coarser and coarser graphs by merging pairs of neighbours (section 3.5). Level 0 is the input;
 /// the last has one node a connected component.
@@ -12,6 +25,8 @@ struct Hierarchy {
   std::vector<Graph> levels;
   /// parents[l][i]: the node of level l + 1 that node i of level l was merged into.
   std::vector<std::vector<Index>> parents;
+  /// children[l][k]: the nodes of level l that became node k of level l + 1.
+  std::vector<Children> children;
 };
 
 /// Pairs are taken by the paper's score <n_i, n_j> min(A_i / A_j, A_j / A_i), the best first, by

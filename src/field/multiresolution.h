@@ -244,19 +244,20 @@ class Multiresolution {
 
   /// The opposite, for restart(): values of level l + 1 from those of level l.
   void restrict_level(std::size_t l) {
-    const std::vector<Index>& parents = hierarchy_.parents[l];
-    const Graph& fine = hierarchy_.levels[l];
-    const std::size_t n = hierarchy_.levels[l + 1].size();
-    held_[l + 1].resize(n);
-    active_[l + 1].assign(n, 0);
-    RunningShare share(n);
-    for (Index i = 0; i < parents.size(); ++i) {
-      const Index k = parents[i];
-      active_[l + 1][k] |= active_[l][i];
-      const bool first = share.is_first(k);
-      const float before = share.add(k, fine.areas[i]);
-      held_[l + 1][k] = first ? kernels_[l + 1].prolong(k, held_[l][i])
-                              : kernels_[l + 1].merge(k, held_[l + 1][k], held_[l][i], before);
+    const Children& children = hierarchy_.children[l];
+    held_[l + 1].resize(children.size());
+    active_[l + 1].assign(children.size(), 0);
+    for (Index k = 0; k < children.size(); ++k) {
+      RunningShare share;
+      Value& mean = held_[l + 1][k];
+      bool first = true;
+      for (const Index i : children[k]) {
+        active_[l + 1][k] |= active_[l][i];
+        const float before = share.add(hierarchy_.levels[l].areas[i]);
+        mean = first ? kernels_[l + 1].prolong(k, held_[l][i])
+                     : kernels_[l + 1].merge(k, mean, held_[l][i], before);
+        first = false;
+      }
     }
   }
 

@@ -5,12 +5,13 @@
 #include "field/position_kernel.h"
 #include "field/running_share.h"
 #include "field/with_symmetry.h"
-#include "graph/for_each_child.h"
 #include "meshgrain/error.h"
 #include "meshgrain/fields.h"
 
 namespace meshgrain {
 namespace {
+
+constexpr std::size_t grain = 2048;
 
 /// Orientations and edge lengths of all levels, from those of the finest.
 template <int N>
@@ -23,21 +24,26 @@ std::vector<LatticeFrame> restrict_frames(const Hierarchy& hierarchy,
     const Graph &fine = hierarchy.levels[l], &coarse = hierarchy.levels[l + 1];
     const DirectionConstraints none;
     const OrientationKernel<N, OrientationEnergy::extrinsic> kernel(coarse, none);
+    const LatticeFrame& finer = frames[l];
     std::vector<Vec3>& directions = frames[l + 1].directions;
     directions.resize(coarse.size());
     std::vector<float> lengths(edge_length.uniform() ? 0 : coarse.size());
-    RunningShare share(coarse.size());
-    const auto merge = [&](Index i, Index k) {
-      const Vec3& direction = frames[l].directions[i];
-      const bool first = share.is_first(k);
-      const float before = share.add(k, fine.areas[i]);
-      directions[k] =
-          first ? kernel.prolong(k, direction) : kernel.merge(k, directions[k], direction, before);
-      if (lengths.empty()) return;
-      const float length = frames[l].edge_length[i];
-      lengths[k] = first ? length : before * lengths[k] + (1 - before) * length;
-    };
-    for_each_child(hierarchy.parents[l], merge, context);
+    context.for_ranges(coarse.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (auto k = static_cast<Index>(begin); k < end; ++k) {
+        const auto children = hierarchy.children[l][k];
+        RunningShare share;
+        share.add(fine.areas[children[0]]);
+        Vec3 direction = kernel.prolong(k, finer.directions[children[0]]);
+        float length = finer.edge_length[children[0]];
+        for (const Index i : children.subspan(1)) {
+          const float before = share.add(fine.areas[i]);
+          direction = kernel.merge(k, direction, finer.directions[i], before);
+          length = before * length + (1 - before) * finer.edge_length[i];
+        }
+        directions[k] = direction;
+        if (!lengths.empty()) lengths[k] = length;
+      }
+    });
     frames[l + 1].edge_length =
         edge_length.uniform() ? edge_length : EdgeLength(std::move(lengths));
   }

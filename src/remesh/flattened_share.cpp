@@ -3,13 +3,13 @@
 #include <cmath>
 #include <vector>
 
-#include "graph/for_each_child.h"
 #include "util/sum.h"
 
 namespace meshgrain {
 namespace {
 
 constexpr float crease = 0.7f;  // cosine
+constexpr std::size_t grain = 4096;
 
 /// The vector areas of patches.
 using Patches = std::vector<Vec3>;
@@ -25,19 +25,22 @@ double total(const Patches& patches, const Context& context) {
       context);
 }
 
-Patches merged(const Patches& patches, const std::vector<Index>& parents, std::size_t count,
-               const Context& context) {
-  Patches result(count, Vec3::Zero());
-  const auto merge = [&](Index i, Index k) {
-    Vec3& whole = result[k];
-    const float size = whole.norm(), more = patches[i].norm();
-    if (size == 0 || whole.dot(patches[i]) > crease * size * more) {
-      whole += patches[i];
-    } else {
-      whole *= (size + more) / size;
+Patches merged(const Patches& patches, const Children& children, const Context& context) {
+  Patches result(children.size());
+  context.for_ranges(result.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      Vec3 whole = Vec3::Zero();
+      for (const Index i : children[k]) {
+        const float size = whole.norm(), more = patches[i].norm();
+        if (size == 0 || whole.dot(patches[i]) > crease * size * more) {
+          whole += patches[i];
+        } else {
+          whole *= (size + more) / size;
+        }
+      }
+      result[k] = whole;
     }
-  };
-  for_each_child(parents, merge, context);
+  });
   return result;
 }
 
@@ -46,7 +49,7 @@ Patches merged(const Patches& patches, const std::vector<Index>& parents, std::s
 double flattened_share(const Hierarchy& hierarchy, double patch, const Context& context) {
   const Graph& finest = hierarchy.levels[0];
   Patches patches(finest.size());
-  context.for_ranges(patches.size(), 8192, [&](std::size_t begin, std::size_t end) {
+  context.for_ranges(patches.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) patches[i] = finest.areas[i] * finest.normals[i];
   });
   const double area = total(patches, context);
@@ -56,7 +59,7 @@ double flattened_share(const Hierarchy& hierarchy, double patch, const Context& 
     const double finer = area / static_cast<double>(patches.size());
     const double coarser = area / static_cast<double>(count);
     if (!(finer < patch)) break;
-    patches = merged(patches, hierarchy.parents[level], count, context);
+    patches = merged(patches, hierarchy.children[level], context);
     const double before = left;
     left = total(patches, context);
     if (coarser > patch) {  // in between

@@ -146,6 +146,7 @@ void Pipeline::complete_levels() {
 void Pipeline::drop_coarse_levels() {
   hierarchy_.levels.resize(1);
   hierarchy_.parents = {};
+  hierarchy_.children = {};
 }
 
 void Pipeline::find_lines() {
