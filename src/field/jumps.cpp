@@ -28,8 +28,7 @@ struct Nodes {
         n(gather(graph.normals.data(), index)),
         o(gather(orientation.directions.data(), index)),
         p(gather(position.points.data(), index)),
-        rho(position.edge_length.uniform() ? all(position.edge_length[0])
-                                           : gather(position.edge_length.values.data(), index)) {}
+        rho(edge_lengths(position.edge_length, index)) {}
 };
 
 /// Jumps, one a lane; the integers as floats.

@@ -91,7 +91,18 @@ HWY_INLINE Vec3s gather(const Vec3* values, const Ints& index) {
   return {gather(first, at), gather(first + 1, at), gather(first + 2, at)};
 }
 
+/// any_tangent() of field/rosy.h.
+HWY_INLINE Vec3s any_tangent(const Vec3s& n) {
+  const Floats sign = hn::CopySign(all(1), n.z);
+  const Floats a = all(-1) / (sign + n.z);
+  return {all(1) + sign * n.x * n.x * a, sign * n.x * n.y * a, hn::Neg(sign) * n.x};
+}
+
 HWY_INLINE void store(const Vec3s& vectors, std::size_t count, Vec3* values) {
+  if (count == hn::Lanes(Lanes())) {
+    hn::StoreInterleaved3(vectors.x, vectors.y, vectors.z, Lanes(), values->data());
+    return;
+  }
   HWY_ALIGN float x[most_lanes], y[most_lanes], z[most_lanes];
   hn::Store(vectors.x, Lanes(), x);
   hn::Store(vectors.y, Lanes(), y);

@@ -20,8 +20,8 @@ namespace meshgrain {
 template <typename K>
 concept FieldKernel = requires(const K& kernel, Index i, std::size_t entry, std::uint64_t hash,
                                const typename K::Value* field, const typename K::Value& value,
-                               std::span<const Index> nodes, typename K::Value* values,
-                               const typename K::Integers* integers) {
+                               std::span<const Index> nodes, const std::vector<Index>& parents,
+                               typename K::Value* values, const typename K::Integers* integers) {
   /// A random value, from a hash of the node.
   { kernel.random(i, hash) } -> std::same_as<typename K::Value>;
   /// The local Gauss-Seidel step: the value of each node that fits its neighbours best.
@@ -30,6 +30,8 @@ concept FieldKernel = requires(const K& kernel, Index i, std::size_t entry, std:
   { kernel.energy(i, field) } -> std::same_as<double>;
   /// The value of a node of a neighbouring level, for node i.
   { kernel.prolong(i, value) } -> std::same_as<typename K::Value>;
+  /// The same for a range of nodes, from the values of all parents.
+  kernel.prolong(parents, i, i, field, values);
   /// The mean of two values as one of node i, the first with the given share.
   { kernel.merge(i, value, value, 0.5f) } -> std::same_as<typename K::Value>;
   /// The same with integers held: those that match node i with the neighbour of an entry.
@@ -233,9 +235,10 @@ class Multiresolution {
     const std::vector<Index>& parents = hierarchy_.parents[l];
     std::vector<Value> finer(parents.size());
     context.for_ranges(finer.size(), grain, [&](std::size_t begin, std::size_t end) {
+      kernels_[l].prolong(parents, static_cast<Index>(begin), static_cast<Index>(end),
+                          values_.data(), finer.data());
       for (std::size_t i = begin; i < end; ++i) {
-        finer[i] = is_active(i) ? kernels_[l].prolong(static_cast<Index>(i), values_[parents[i]])
-                                : held_[l][i];
+        if (!is_active(i)) finer[i] = held_[l][i];
       }
     });
     values_.swap(finer);

@@ -2,6 +2,7 @@
 
 #include <complex>
 
+#include "field/carry_fields.h"
 #include "field/relax_orientations.h"
 #include "field/rosy.h"
 #include "util/hash.h"
@@ -53,6 +54,15 @@ class OrientationKernel {
     if (!(length > 1e-6f * value.norm()) || length == 0) return any_tangent(graph_->normals[i]);
     if constexpr (E == OrientationEnergy::convex) return v * (value.norm() / length);
     return v / length;
+  }
+
+  void prolong(const std::vector<Index>& parents, Index begin, Index end, const Vec3* coarser,
+               Vec3* values) const {
+    if constexpr (E == OrientationEnergy::convex) {
+      for (Index i = begin; i < end; ++i) values[i] = prolong(i, coarser[parents[i]]);
+    } else {
+      prolong_orientations(*graph_, parents, begin, end, coarser, values);
+    }
   }
 
   Vec3 merge(Index i, const Vec3& a, const Vec3& b, float share) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "field/carry_fields.h"
 #include "field/posy.h"
 #include "field/relax_positions.h"
 #include "meshgrain/fields.h"
@@ -41,6 +42,11 @@ class PositionKernel {
   }
 
   Vec3 prolong(Index i, const Vec3& value) const { return nearest(i, project(i, value)); }
+
+  void prolong(const std::vector<Index>& parents, Index begin, Index end, const Vec3* coarser,
+               Vec3* values) const {
+    prolong_positions(*graph_, *frame_, parents, S, begin, end, coarser, values);
+  }
 
   Vec3 merge(Index i, const Vec3& a, const Vec3& b, float share) const {
     const Vec3 pa = project(i, a);

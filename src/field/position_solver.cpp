@@ -14,7 +14,6 @@ namespace {
 constexpr std::size_t grain = 2048;
 
 /// Orientations and edge lengths of all levels, from those of the finest.
-template <int N>
 std::vector<LatticeFrame> restrict_frames(const Hierarchy& hierarchy,
                                           const OrientationField& orientation,
                                           const EdgeLength& edge_length, const Context& context) {
@@ -22,30 +21,25 @@ std::vector<LatticeFrame> restrict_frames(const Hierarchy& hierarchy,
   frames[0] = {orientation.directions, edge_length};
   for (std::size_t l = 0; l + 1 < frames.size(); ++l) {
     const Graph &fine = hierarchy.levels[l], &coarse = hierarchy.levels[l + 1];
-    const DirectionConstraints none;
-    const OrientationKernel<N, OrientationEnergy::extrinsic> kernel(coarse, none);
     const LatticeFrame& finer = frames[l];
-    std::vector<Vec3>& directions = frames[l + 1].directions;
-    directions.resize(coarse.size());
+    std::vector<Vec3> directions(coarse.size());
     std::vector<float> lengths(edge_length.uniform() ? 0 : coarse.size());
     context.for_ranges(coarse.size(), grain, [&](std::size_t begin, std::size_t end) {
-      for (auto k = static_cast<Index>(begin); k < end; ++k) {
-        const auto children = hierarchy.children[l][k];
+      restrict_orientations(fine, coarse, hierarchy.children[l], orientation.rosy,
+                            static_cast<Index>(begin), static_cast<Index>(end),
+                            finer.directions.data(), directions.data());
+      if (lengths.empty()) return;
+      for (std::size_t k = begin; k < end; ++k) {
         RunningShare share;
-        share.add(fine.areas[children[0]]);
-        Vec3 direction = kernel.prolong(k, finer.directions[children[0]]);
-        float length = finer.edge_length[children[0]];
-        for (const Index i : children.subspan(1)) {
+        for (const Index i : hierarchy.children[l][k]) {
           const float before = share.add(fine.areas[i]);
-          direction = kernel.merge(k, direction, finer.directions[i], before);
-          length = before * length + (1 - before) * finer.edge_length[i];
+          const float length = finer.edge_length[i];
+          lengths[k] = before > 0 ? before * lengths[k] + (1 - before) * length : length;
         }
-        directions[k] = direction;
-        if (!lengths.empty()) lengths[k] = length;
       }
     });
-    frames[l + 1].edge_length =
-        edge_length.uniform() ? edge_length : EdgeLength(std::move(lengths));
+    frames[l + 1] = {std::move(directions),
+                     edge_length.uniform() ? edge_length : EdgeLength(std::move(lengths))};
   }
   return frames;
 }
@@ -104,9 +98,7 @@ std::unique_ptr<PositionSolver> PositionSolver::create(
       throw Error("the target edge length must be a positive number");
     }
   }
-  auto frames = with_rosy(orientation.rosy, [&]<int N>() {
-    return restrict_frames<N>(hierarchy, orientation, edge_length, context);
-  });
+  auto frames = restrict_frames(hierarchy, orientation, edge_length, context);
   return with_posy(options.posy, [&]<int S>() -> std::unique_ptr<PositionSolver> {
     if (options.energy == PositionEnergy::intrinsic) {
       return std::make_unique<Solver<S, PositionEnergy::intrinsic>>(hierarchy, std::move(frames),

@@ -50,7 +50,7 @@ class Relaxation {
     const Vec3s o = gather(field_, around_.neighbors);
     const Vec3s n = gather(graph_.normals.data(), around_.neighbors);
     if constexpr (E == OrientationEnergy::intrinsic) {
-      return {sum, most_similar(transport(o, n, n_), sum)};
+      return {sum, most_similar<N>(transport(o, n, n_), n_, sum)};
     } else if constexpr (N == 1) {
       return {sum, o};
     } else {
@@ -72,21 +72,6 @@ class Relaxation {
     }
   }
 
-  /// Of the rotations of a vector in the nodes' planes, that at the least angle to another.
-  HWY_INLINE Vec3s most_similar(const Vec3s& o, const Vec3s& to) const {
-    if constexpr (N == 1) return o;
-    Vec3s best = o;
-    Floats best_cosine = all(-1);
-    for (int k = 0; k < half; ++k) {
-      const Vec3s turned = rotate<N>(o, n_, k);
-      const Floats cosine = dot(to, turned);
-      const Mask better = hn::Gt(hn::Abs(cosine), best_cosine);
-      best_cosine = choose(better, hn::Abs(cosine), best_cosine);
-      best = choose(better, choose(hn::Lt(cosine, all(0)), -turned, turned), best);
-    }
-    return best;
-  }
-
   static HWY_INLINE Vec3s normalized_or(const Vec3s& v, const Vec3s& fallback) {
     const Floats length = norm(v);
     return choose(hn::Gt(length, all(1e-6f)), v / length, fallback);
@@ -101,7 +86,7 @@ class Relaxation {
     const Vec3s direction = gather(constraints_.directions.data(), around_.nodes);
     // Normalised twice, as steps with integers held do it: both pull to the same bytes.
     const Vec3s target = normalized_or(project_to_plane(direction, n_), value);
-    const Vec3s similar = most_similar(target / norm(target), value);
+    const Vec3s similar = most_similar<N>(target / norm(target), n_, value);
     const Vec3s mixed = (all(1) - strength) * value + (strength * norm(value)) * similar;
     return choose(wanted, normalized_or(project_to_plane(mixed, n_), similar), value);
   }

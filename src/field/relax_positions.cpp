@@ -21,11 +21,6 @@ struct Level {
   const LatticeFrame& frame;
   const LineConstraints& constraints;
   const Vec3* field;
-
-  HWY_INLINE Floats edge_lengths(const Ints& nodes) const {
-    const auto& values = frame.edge_length.values;
-    return frame.edge_length.uniform() ? all(values[0]) : gather(values.data(), nodes);
-  }
 };
 
 template <int S, PositionEnergy E>
@@ -35,9 +30,10 @@ class Relaxation {
       : level_(level),
         around_(around),
         x_(gather(level.graph.positions.data(), around.nodes)),
-        lattice_(
-            gather(level.field, around.nodes), gather(level.frame.directions.data(), around.nodes),
-            gather(level.graph.normals.data(), around.nodes), level.edge_lengths(around.nodes)) {}
+        lattice_(gather(level.field, around.nodes),
+                 gather(level.frame.directions.data(), around.nodes),
+                 gather(level.graph.normals.data(), around.nodes),
+                 edge_lengths(level.frame.edge_length, around.nodes)) {}
 
   HWY_INLINE Vec3s run() {
     Vec3s& mean = lattice_.p;  // so far
@@ -67,7 +63,7 @@ class Relaxation {
     const Vec3s p = gather(level_.field, j);
     if constexpr (E == PositionEnergy::extrinsic) {
       const Lattices<S> other(p, gather(level_.frame.directions.data(), j), normal,
-                              level_.edge_lengths(j));
+                              edge_lengths(level_.frame.edge_length, j));
       const LatticePair t = match_lattices(lattice_, other, q);
       return {lattice_.point(t.i), other.point(t.j)};
     } else {

@@ -13,6 +13,7 @@
 #include <array>
 
 #include "field/lanes.h"
+#include "meshgrain/fields.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace meshgrain {
@@ -28,6 +29,26 @@ HWY_INLINE Vec3s rotate(const Vec3s& o, const Vec3s& n, int k) {
     const float cosine = k == 1 ? 0.5f : -0.5f;
     return all(cosine) * o + all(0.866025404f) * cross(n, o);
   }
+}
+
+/// Of the rotations of vectors in planes of normals n, that at the least angle to another one.
+template <int N>
+HWY_INLINE Vec3s most_similar(const Vec3s& o, const Vec3s& n, const Vec3s& to) {
+  if constexpr (N == 1) return o;
+  Vec3s best = o;
+  Floats best_cosine = all(-1);
+  for (int k = 0; k < N / 2; ++k) {
+    const Vec3s turned = rotate<N>(o, n, k);
+    const Floats cosine = dot(to, turned);
+    const Mask better = hn::Gt(hn::Abs(cosine), best_cosine);
+    best_cosine = choose(better, hn::Abs(cosine), best_cosine);
+    best = choose(better, choose(hn::Lt(cosine, all(0)), -turned, turned), best);
+  }
+  return best;
+}
+
+HWY_INLINE Floats edge_lengths(const EdgeLength& lengths, const Ints& nodes) {
+  return lengths.uniform() ? all(lengths[0]) : gather(lengths.values.data(), nodes);
 }
 
 /// Integers of a lattice as floats: all that is asked of them is to be added and multiplied.
