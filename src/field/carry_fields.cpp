@@ -15,16 +15,12 @@ namespace meshgrain {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// Calls `value` with as many of the nodes [begin, end) as there are lanes; those too many repeat
-/// the last one.
+/// Stores what `value` makes of the nodes [begin, end).
 template <typename Value>
-HWY_INLINE void for_range(Index begin, Index end, Vec3* values, const Value& value) {
-  const auto width = static_cast<Index>(hn::Lanes(Lanes()));
-  for (Index first = begin; first < end; first += width) {
-    const Ints nodes = hn::Min(hn::Iota(IntLanes(), static_cast<std::int32_t>(first)),
-                               hn::Set(IntLanes(), static_cast<std::int32_t>(end - 1)));
-    store(value(nodes), std::min(width, end - first), values + first);
-  }
+HWY_INLINE void make_values(Index begin, Index end, Vec3* values, const Value& value) {
+  for_range(begin, end, [&](const Ints& nodes, Index first, Index count) {
+    store(value(nodes), count, values + first);
+  });
 }
 
 /// Projected and made unit; any tangent where nothing is left.
@@ -63,7 +59,7 @@ HWY_INLINE Vec3s mean_of_children(const Graph& fine, const Children& children, c
 
 void prolong_orientations(const Graph& graph, const std::vector<Index>& parents, Index begin,
                           Index end, const Vec3* coarser, Vec3* values) {
-  for_range(begin, end, values, [&](const Ints& nodes) {
+  make_values(begin, end, values, [&](const Ints& nodes) {
     return unit_tangents(gather(coarser, gather(parents.data(), nodes)),
                          gather(graph.normals.data(), nodes));
   });
@@ -72,7 +68,7 @@ void prolong_orientations(const Graph& graph, const std::vector<Index>& parents,
 void restrict_orientations(const Graph& fine, const Graph& coarse, const Children& children,
                            int rosy, Index begin, Index end, const Vec3* finer, Vec3* values) {
   with_rosy(rosy, [&]<int N>() {
-    for_range(begin, end, values, [&](const Ints& nodes) {
+    make_values(begin, end, values, [&](const Ints& nodes) {
       return mean_of_children<N>(fine, children, finer, nodes,
                                  gather(coarse.normals.data(), nodes));
     });
@@ -83,12 +79,12 @@ void prolong_positions(const Graph& graph, const LatticeFrame& frame,
                        const std::vector<Index>& parents, int posy, Index begin, Index end,
                        const Vec3* coarser, Vec3* values) {
   with_posy(posy, [&]<int S>() {
-    for_range(begin, end, values, [&](const Ints& nodes) {
+    make_values(begin, end, values, [&](const Ints& nodes) {
       const Vec3s x = gather(graph.positions.data(), nodes);
       const Vec3s n = gather(graph.normals.data(), nodes);
       const Vec3s p = gather(coarser, gather(parents.data(), nodes));
       const Lattices<S> lattice(p - dot(n, p - x) * n, gather(frame.directions.data(), nodes), n,
-                                edge_lengths(frame.edge_length, nodes));
+                                cell_sizes(frame.edge_length, nodes));
       return lattice.point(lattice.round(x));
     });
   });

@@ -20,7 +20,7 @@ namespace {
 /// Both fields at a node, one a lane.
 struct Nodes {
   Vec3s x, n, o, p;
-  Floats rho;
+  CellSizes size;
 
   HWY_INLINE Nodes(const Graph& graph, const OrientationField& orientation,
                    const PositionField& position, const Ints& index)
@@ -28,7 +28,7 @@ struct Nodes {
         n(gather(graph.normals.data(), index)),
         o(gather(orientation.directions.data(), index)),
         p(gather(position.points.data(), index)),
-        rho(edge_lengths(position.edge_length, index)) {}
+        size(cell_sizes(position.edge_length, index)) {}
 };
 
 /// Jumps, one a lane; the integers as floats.
@@ -88,11 +88,11 @@ HWY_INLINE Vec3s turned(const Vec3s& o, const Vec3s& n, const Floats& rotation) 
 
 template <int S, PositionEnergy E>
 HWY_INLINE Jumps jumps_between(const Nodes& i, const Nodes& j) {
-  const Lattices<S> lattice(i.p, i.o, i.n, i.rho);
+  const Lattices<S> lattice(i.p, i.o, i.n, i.size);
   const Vec3s q = intermediate_positions(i.x, i.n, j.x, j.n);
   if constexpr (E == PositionEnergy::extrinsic) {
     const Floats rotation = match_extrinsic<S>(i, j);
-    const Lattices<S> neighbor(j.p, turned<S>(j.o, j.n, rotation), j.n, j.rho);
+    const Lattices<S> neighbor(j.p, turned<S>(j.o, j.n, rotation), j.n, j.size);
     const LatticePair t = match_lattices(lattice, neighbor, q);
     return {rotation, {t.i[0] - t.j[0], t.i[1] - t.j[1]}};
   } else {

@@ -36,7 +36,7 @@ class Relaxation {
     Vec3s sum = before;
     for (bool first = true; around_.next(); first = false) {
       const Pair pair = matched(sum);
-      const Vec3s weighted = around_.weights * pair.other;
+      const Vec3s weighted = around_.weights() * pair.other;
       const Vec3s next = first ? weighted : pair.own + weighted;
       sum = choose(around_.active, project_to_plane(next, n_), sum);
     }

@@ -33,14 +33,14 @@ class Relaxation {
         lattice_(gather(level.field, around.nodes),
                  gather(level.frame.directions.data(), around.nodes),
                  gather(level.graph.normals.data(), around.nodes),
-                 edge_lengths(level.frame.edge_length, around.nodes)) {}
+                 cell_sizes(level.frame.edge_length, around.nodes)) {}
 
   HWY_INLINE Vec3s run() {
     Vec3s& mean = lattice_.p;  // so far
     Floats total = all(0);
     while (around_.next()) {
       const auto [own, other] = matched();
-      const Floats& w = around_.weights;
+      const Floats w = around_.weights();
       const Vec3s sum = (total * own + w * other) / (total + w);
       mean = choose(around_.active, project(sum), mean);
       total = choose(around_.active, total + w, total);
@@ -63,7 +63,7 @@ class Relaxation {
     const Vec3s p = gather(level_.field, j);
     if constexpr (E == PositionEnergy::extrinsic) {
       const Lattices<S> other(p, gather(level_.frame.directions.data(), j), normal,
-                              edge_lengths(level_.frame.edge_length, j));
+                              cell_sizes(level_.frame.edge_length, j));
       const LatticePair t = match_lattices(lattice_, other, q);
       return {lattice_.point(t.i), other.point(t.j)};
     } else {

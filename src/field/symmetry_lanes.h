@@ -1,5 +1,5 @@
 // The symmetries of field/rosy.h and field/posy.h, a node or edge a SIMD lane: include it like
-// field/lanes.h.
+// graph/lanes.h.
 
 #if defined(MESHGRAIN_FIELD_SYMMETRY_LANES_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef MESHGRAIN_FIELD_SYMMETRY_LANES_H
@@ -12,7 +12,7 @@
 
 #include <array>
 
-#include "field/lanes.h"
+#include "graph/lanes.h"
 #include "meshgrain/fields.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -47,8 +47,18 @@ HWY_INLINE Vec3s most_similar(const Vec3s& o, const Vec3s& n, const Vec3s& to) {
   return best;
 }
 
-HWY_INLINE Floats edge_lengths(const EdgeLength& lengths, const Ints& nodes) {
-  return lengths.uniform() ? all(lengths[0]) : gather(lengths.values.data(), nodes);
+/// Edge lengths of lattices.
+struct CellSizes {
+  Floats rho, inverse_square;
+};
+
+HWY_INLINE CellSizes cell_sizes(const EdgeLength& lengths, const Ints& nodes) {
+  if (lengths.uniform()) {
+    const float rho = lengths[0];
+    return {all(rho), all(1 / (rho * rho))};
+  }
+  const Floats rho = gather(lengths.values.data(), nodes);
+  return {rho, all(1) / (rho * rho)};
 }
 
 /// Integers of a lattice as floats: all that is asked of them is to be added and multiplied.
@@ -61,8 +71,8 @@ struct Lattices {
   Floats inverse_square;
 
   HWY_INLINE Lattices(const Vec3s& position, const Vec3s& orientation, const Vec3s& normal,
-                      const Floats& rho)
-      : p(position), u(rho * orientation), n(normal), inverse_square(all(1) / (rho * rho)) {
+                      const CellSizes& size)
+      : p(position), u(size.rho * orientation), n(normal), inverse_square(size.inverse_square) {
     const Vec3s side = cross(n, u);
     if constexpr (S == 4) {
       v = side;

@@ -78,33 +78,39 @@ class Groups {
 /// The nodes of the coarser level.
 Children number(const Groups& groups, std::vector<Index>& parents, const Context& context) {
   const std::size_t n = groups.nodes();
-  struct Count {
-    Index groups = 0, nodes = 0;
+  struct Range {
+    std::vector<Index> firsts;  // of the groups that start in it
+    Index groups_before = 0, nodes_before = 0;
   };
-  std::vector<Count> before((n + grain - 1) / grain + 1);
+  std::vector<Range> ranges((n + grain - 1) / grain + 1);
   context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
-    Count& count = before[begin / grain + 1];
+    std::vector<Index>& firsts = ranges[begin / grain].firsts;
+    firsts.resize(end - begin);
+    std::size_t count = 0;
     for (auto i = static_cast<Index>(begin); i < end; ++i) {
-      if (!groups.is_first(i)) continue;
-      ++count.groups;
-      groups.for_nodes(i, [&](Index) { ++count.nodes; });
+      firsts[count] = i;
+      count += groups.is_first(i);
     }
+    firsts.resize(count);
+    Index& nodes = ranges[begin / grain + 1].nodes_before;
+    for (const Index first : firsts) groups.for_nodes(first, [&](Index) { ++nodes; });
   });
-  for (std::size_t r = 1; r < before.size(); ++r) {
-    before[r].groups += before[r - 1].groups;
-    before[r].nodes += before[r - 1].nodes;
+  for (std::size_t r = 1; r < ranges.size(); ++r) {
+    ranges[r].nodes_before += ranges[r - 1].nodes_before;
+    ranges[r].groups_before =
+        ranges[r - 1].groups_before + static_cast<Index>(ranges[r - 1].firsts.size());
   }
   Children result;
-  result.offsets.resize(before.back().groups + 1);
-  result.offsets.back() = before.back().nodes;
+  result.offsets.resize(ranges.back().groups_before + 1);
+  result.offsets.back() = ranges.back().nodes_before;
   result.nodes.resize(n);
   parents.resize(n);
-  context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
-    auto [k, place] = before[begin / grain];
-    for (auto i = static_cast<Index>(begin); i < end; ++i) {
-      if (!groups.is_first(i)) continue;
+  context.for_ranges(n, grain, [&](std::size_t begin, std::size_t) {
+    const Range& range = ranges[begin / grain];
+    Index k = range.groups_before, place = range.nodes_before;
+    for (const Index first : range.firsts) {
       result.offsets[k] = place;
-      groups.for_nodes(i, [&, &place = place, k = k](Index child) {
+      groups.for_nodes(first, [&](Index child) {
         parents[child] = k;
         result.nodes[place++] = child;
       });

@@ -8,8 +8,73 @@
 
 #include "util/hash.h"
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "graph/match_pairs.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "graph/lanes.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace meshgrain {
+namespace HWY_NAMESPACE {
+namespace {
+
+/// The scores of all edges of the nodes [begin, end), and the neighbour of the best one; `ties`
+/// gets the nodes that have several of these.
+void score_edges(const Graph& graph, Index begin, Index end, float* scores, Index* best,
+                 std::vector<Index>& ties) {
+  for_range(begin, end, [&](const Ints& nodes, Index first, Index count) {
+    const Vec3s n = gather(graph.normals.data(), nodes);
+    const Floats area = gather(graph.areas.data(), nodes);
+    NeighborLanes around(graph, nodes);
+    Ints best_neighbor = hn::Set(IntLanes(), -1);
+    Floats best_score = all(-1);
+    Mask is_tie = hn::Gt(best_score, all(0));
+    HWY_ALIGN std::int32_t entries[most_lanes], active[most_lanes];
+    HWY_ALIGN float values[most_lanes];
+    while (around.next()) {
+      // Must be the same seen from both ends, or proposals could chase each other in circles.
+      const Floats other = gather(graph.areas.data(), around.neighbors);
+      const Floats larger = hn::Max(area, other);
+      const Floats ratio = choose(hn::Gt(larger, all(0)), hn::Min(area, other) / larger, all(1));
+      const Floats cosine = dot(n, gather(graph.normals.data(), around.neighbors));
+      const Floats score = hn::Max(cosine, all(0)) * ratio;
+      const Mask better = hn::And(around.active, hn::Gt(score, best_score));
+      is_tie =
+          hn::Or(hn::AndNot(better, is_tie), hn::And(around.active, hn::Eq(score, best_score)));
+      best_score = choose(better, score, best_score);
+      best_neighbor =
+          hn::IfThenElse(hn::RebindMask(IntLanes(), better), around.neighbors, best_neighbor);
+      hn::Store(around.entries, IntLanes(), entries);
+      hn::Store(score, Lanes(), values);
+      hn::Store(hn::VecFromMask(IntLanes(), hn::RebindMask(IntLanes(), around.active)), IntLanes(),
+                active);
+      for (Index k = 0; k < count; ++k) {
+        if (active[k] != 0) scores[entries[k]] = values[k];
+      }
+    }
+    HWY_ALIGN std::int32_t neighbors[most_lanes];
+    hn::Store(best_neighbor, IntLanes(), neighbors);
+    for (Index k = 0; k < count; ++k) best[first + k] = static_cast<Index>(neighbors[k]);
+    if (hn::AllFalse(Lanes(), is_tie)) return;
+    hn::Store(hn::VecFromMask(Lanes(), is_tie), Lanes(), values);
+    for (Index k = 0; k < count; ++k) {
+      if (std::bit_cast<std::int32_t>(values[k]) != 0) ties.push_back(first + k);
+    }
+  });
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace meshgrain
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace meshgrain {
 namespace {
+
+HWY_EXPORT(score_edges);
 
 /// Proposals by rounds, first within ranges of nodes, then for those that wait for a node of
 /// another range within larger ones. Each pair is better than all that its nodes could still have,
@@ -31,7 +96,11 @@ class PairMatching {
       std::vector<Index>& nodes = open[begin / size];
       nodes.resize(end - begin);
       std::iota(nodes.begin(), nodes.end(), static_cast<Index>(begin));
-      for (const Index i : nodes) proposal_[i] = first_proposal(i);
+      std::vector<Index> ties;
+      HWY_DYNAMIC_DISPATCH(score_edges)
+      (graph_, static_cast<Index>(begin), static_cast<Index>(end), scores_.get(), proposal_.get(),
+       ties);
+      for (const Index i : ties) proposal_[i] = best_neighbor(i);
       while (pair_up(nodes, begin, end)) propose_anew(nodes);
     });
     while (open.size() > 1) {
@@ -53,14 +122,6 @@ class PairMatching {
   }
 
  private:
-  /// Must be the same seen from both ends, or proposals could chase each other in circles.
-  float score(Index i, Index j) const {
-    const float smaller = std::min(graph_.areas[i], graph_.areas[j]);
-    const float larger = std::max(graph_.areas[i], graph_.areas[j]);
-    const float ratio = larger > 0 ? smaller / larger : 1.0f;
-    return std::max(graph_.normals[i].dot(graph_.normals[j]), 0.0f) * ratio;
-  }
-
   static std::uint64_t hash_of_edge(Index i, Index j) {
     return hash64(std::uint64_t{std::min(i, j)} << 32 | std::max(i, j));
   }
@@ -101,16 +162,6 @@ class PairMatching {
   }
 
   std::int32_t key(Index entry) const { return std::bit_cast<std::int32_t>(scores_[entry]); }
-
-  /// While all nodes are free. Keeps the scores.
-  Index first_proposal(Index i) {
-    Best best;
-    for (Index e = graph_.offsets[i]; e < graph_.offsets[i + 1]; ++e) {
-      scores_[e] = score(i, graph_.neighbors[e]);
-      best.take(e, key(e));
-    }
-    return neighbor(i, best, [](Index) { return true; });
-  }
 
   Index best_free_neighbor(Index i) {
     Best best;
@@ -164,3 +215,4 @@ std::vector<Index> match_pairs(const Graph& graph, const Context& context) {
 }
 
 }  // namespace meshgrain
+#endif

@@ -1,11 +1,11 @@
 // Vectors of several nodes at once, one a SIMD lane. Compiled anew for every instruction set:
 // include it after hwy/foreach_target.h only.
 
-#if defined(MESHGRAIN_FIELD_LANES_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef MESHGRAIN_FIELD_LANES_H
-#undef MESHGRAIN_FIELD_LANES_H
+#if defined(MESHGRAIN_GRAPH_LANES_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef MESHGRAIN_GRAPH_LANES_H
+#undef MESHGRAIN_GRAPH_LANES_H
 #else
-#define MESHGRAIN_FIELD_LANES_H
+#define MESHGRAIN_GRAPH_LANES_H
 #endif
 
 #include <hwy/highway.h>
@@ -114,37 +114,59 @@ HWY_INLINE void store(const Vec3s& vectors, std::size_t count, Vec3* values) {
 class NeighborLanes {
  public:
   /// Up to as many nodes as there are lanes; others repeat the first one.
-  NeighborLanes(const Graph& graph, const Index* first, std::size_t count) : graph_(graph) {
-    HWY_ALIGN std::int32_t index[most_lanes];
-    for (std::size_t k = 0; k < hn::Lanes(IntLanes()); ++k) {
-      index[k] = static_cast<std::int32_t>(first[k < count ? k : 0]);
-    }
-    nodes = hn::Load(IntLanes(), index);
-    entry_ = gather(graph.offsets.data(), nodes);
-    end_ = gather(graph.offsets.data() + 1, nodes);
-  }
+  NeighborLanes(const Graph& graph, const Index* first, std::size_t count)
+      : NeighborLanes(graph, load(first, count)) {}
+
+  NeighborLanes(const Graph& graph, const Ints& indices)
+      : nodes(indices),
+        graph_(graph),
+        entry_(gather(graph.offsets.data(), nodes)),
+        end_(gather(graph.offsets.data() + 1, nodes)) {}
 
   /// Goes on to the next neighbour; returns false when no node has any more.
   HWY_INLINE bool next() {
     const auto more = hn::Lt(entry_, end_);
     if (hn::AllFalse(IntLanes(), more)) return false;
     active = hn::RebindMask(Lanes(), more);
-    const Ints entry = hn::IfThenElseZero(more, entry_);
-    neighbors = hn::IfThenElse(more, gather(graph_.neighbors.data(), entry), nodes);
-    weights = graph_.weights.empty() ? all(1) : gather(graph_.weights.data(), entry);
+    entries = hn::IfThenElseZero(more, entry_);
+    neighbors = hn::IfThenElse(more, gather(graph_.neighbors.data(), entries), nodes);
     entry_ = hn::IfThenElse(more, entry_ + hn::Set(IntLanes(), 1), entry_);
     return true;
   }
 
+  HWY_INLINE Floats weights() const {
+    return graph_.weights.empty() ? all(1) : gather(graph_.weights.data(), entries);
+  }
+
   Ints nodes;
+  Ints entries;
   Ints neighbors;  // of lanes that have no more, the node itself
-  Floats weights;
-  Mask active;  // lanes that have a neighbour
+  Mask active;     // lanes that have a neighbour
 
  private:
+  static HWY_INLINE Ints load(const Index* first, std::size_t count) {
+    HWY_ALIGN std::int32_t index[most_lanes];
+    for (std::size_t k = 0; k < hn::Lanes(IntLanes()); ++k) {
+      index[k] = static_cast<std::int32_t>(first[k < count ? k : 0]);
+    }
+    return hn::Load(IntLanes(), index);
+  }
+
   const Graph& graph_;
   Ints entry_, end_;
 };
+
+/// Calls `body(nodes, first, count)` for the nodes [begin, end), `count` at once from `first` on;
+/// lanes too many repeat the last one.
+template <typename Body>
+HWY_INLINE void for_range(Index begin, Index end, const Body& body) {
+  const auto width = static_cast<Index>(hn::Lanes(Lanes()));
+  for (Index first = begin; first < end; first += width) {
+    const Ints nodes = hn::Min(hn::Iota(IntLanes(), static_cast<std::int32_t>(first)),
+                               hn::Set(IntLanes(), static_cast<std::int32_t>(end - 1)));
+    body(nodes, first, std::min(width, end - first));
+  }
+}
 
 /// `values` gets what `step` makes of each of the nodes, as many at once as there are lanes.
 template <typename Step>
