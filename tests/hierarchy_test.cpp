@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -180,6 +181,26 @@ TEST(Hierarchy, PairsWhatIsAlike) {
   EXPECT_EQ(by_normal.parents[0][0], by_normal.parents[0][1]);
   EXPECT_EQ(by_normal.parents[0][2], by_normal.parents[0][3]);
   EXPECT_NE(by_normal.parents[0][1], by_normal.parents[0][2]);
+}
+
+TEST(Hierarchy, BlocksOfAColorDoNotTouch) {
+  const Hierarchy hierarchy = build_hierarchy(build_graph(sample_shape("blob", 0.5)));
+  ASSERT_EQ(hierarchy.colorings.size(), hierarchy.levels.size());
+  for (std::size_t l = 0; l < hierarchy.levels.size(); ++l) {
+    const Graph& graph = hierarchy.levels[l];
+    const BlockColoring& coloring = hierarchy.colorings[l];
+    constexpr std::size_t size = BlockColoring::block_size;
+    std::vector<std::size_t> color((graph.size() + size - 1) / size, coloring.colors.size());
+    for (std::size_t c = 0; c < coloring.colors.size(); ++c) {
+      for (const Index b : coloring.colors[c]) color[b] = c;
+    }
+    for (Index i = 0; i < graph.size(); ++i) {
+      ASSERT_LT(color[i / size], coloring.colors.size());
+      for (const Index j : graph.neighbors_of(i)) {
+        EXPECT_TRUE(j / size == i / size || color[j / size] != color[i / size]);
+      }
+    }
+  }
 }
 
 TEST(Hierarchy, HasAboutLogarithmicallyManyLevels) {

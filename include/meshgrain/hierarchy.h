@@ -19,6 +19,14 @@ struct Children {
   }
 };
 
+/// Nodes in blocks of consecutive indices, the blocks in groups ("colours") such that no two of a
+/// group are neighbours. Blocks of a group can be swept at once, each in the order of its nodes, by
+/// different threads or in different SIMD lanes: the result is the same for any number of either.
+struct BlockColoring {
+  static constexpr std::size_t block_size = 64;
+  std::vector<std::vector<Index>> colors;  ///< The blocks of each colour.
+};
+
 /// Coarser and coarser graphs by merging pairs of neighbours (section 3.5). Level 0 is the input;
 /// the last has one node a connected component.
 struct Hierarchy {
@@ -27,6 +35,7 @@ struct Hierarchy {
   std::vector<std::vector<Index>> parents;
   /// children[l][k]: the nodes of level l that became node k of level l + 1.
   std::vector<Children> children;
+  std::vector<BlockColoring> colorings;  ///< Of each level.
 };
 
 /// Pairs are taken by the paper's score <n_i, n_j> min(A_i / A_j, A_j / A_i), the best first, by

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "field/running_share.h"
-#include "field/schedule.h"
 #include "meshgrain/fields.h"
 #include "util/hash.h"
 
@@ -57,7 +56,6 @@ class Multiresolution {
     for (Index i = 0; i < values_.size(); ++i) {
       values_[i] = kernel.random(i, hash64(options.seed, i));
     }
-    enter_level(Context(1));
   }
 
   bool step(const Context& context) {
@@ -95,7 +93,6 @@ class Multiresolution {
     held_.clear();
     level_ = 0;
     sweep_ = sweeps();
-    enter_level(Context(1));
   }
 
   void restart(std::span<const Index> region) {
@@ -110,7 +107,6 @@ class Multiresolution {
     level_ = top;
     sweep_ = 0;
     values_ = held_.back();
-    enter_level(Context(1));
   }
 
   void freeze_integers(const Context& context) {
@@ -159,10 +155,6 @@ class Multiresolution {
     return hierarchy_.levels[0].size() < large ? 2 : 1;
   }
 
-  void enter_level(const Context& context) {
-    if (options_.schedule != Schedule::random_order) coloring_ = color_blocks(graph(), context);
-  }
-
   bool is_active(std::size_t i) const {
     return active_.empty() || active_[static_cast<std::size_t>(level_)][i];
   }
@@ -209,11 +201,9 @@ class Multiresolution {
       return;
     }
     // Every block of a few goes on by one node, then all of them by the next one.
-    const auto threads = static_cast<std::size_t>(context.threads());
-    for (const std::vector<Index>& blocks : coloring_.colors) {
-      const std::size_t each =
-          std::clamp<std::size_t>((blocks.size() + threads - 1) / threads, 1, at_once);
-      context.for_ranges(blocks.size(), each, [&](std::size_t begin, std::size_t end) {
+    const BlockColoring& coloring = hierarchy_.colorings[static_cast<std::size_t>(level_)];
+    for (const std::vector<Index>& blocks : coloring.colors) {
+      context.for_ranges(blocks.size(), at_once, [&](std::size_t begin, std::size_t end) {
         std::array<Index, at_once> nodes;
         for (std::size_t place = 0; place < BlockColoring::block_size; ++place) {
           std::size_t count = 0;
@@ -242,7 +232,6 @@ class Multiresolution {
       }
     });
     values_.swap(finer);
-    enter_level(context);
   }
 
   /// The opposite, for restart(): values of level l + 1 from those of level l.
@@ -272,7 +261,6 @@ class Multiresolution {
   int sweep_ = 0;
   std::uint64_t rounds_ = 0;
   std::vector<Value> values_;  // of the current level
-  BlockColoring coloring_;     // of the current level
   std::vector<Integers> integers_;
   // Of a restart on a region: which nodes may change, and the values that the others keep.
   std::vector<std::vector<std::uint8_t>> active_;

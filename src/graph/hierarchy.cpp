@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "graph/color_blocks.h"
 #include "graph/match_pairs.h"
 #include "graph/merge_edges.h"
 #include "util/collect.h"
@@ -165,6 +166,9 @@ Hierarchy build_hierarchy(Graph graph, const Context& context) {
     hierarchy.levels.push_back(std::move(coarse));
     context.progress("hierarchy", 1.0 - static_cast<double>(hierarchy.levels.back().size()) /
                                             static_cast<double>(finest));
+  }
+  for (const Graph& level : hierarchy.levels) {
+    hierarchy.colorings.push_back(color_blocks(level, context));
   }
   return hierarchy;
 }

@@ -147,6 +147,7 @@ void Pipeline::drop_coarse_levels() {
   hierarchy_.levels.resize(1);
   hierarchy_.parents = {};
   hierarchy_.children = {};
+  hierarchy_.colorings = {};
 }
 
 void Pipeline::find_lines() {

@@ -1,9 +1,11 @@
-#include "field/schedule.h"
+#include "graph/color_blocks.h"
 
 #include <algorithm>
 
 namespace meshgrain {
 namespace {
+
+constexpr std::size_t size = BlockColoring::block_size;
 
 /// The blocks before each block that have neighbours in it.
 struct LowerBlocks {
@@ -12,24 +14,33 @@ struct LowerBlocks {
 };
 
 LowerBlocks lower_blocks(const Graph& graph, std::size_t begin, std::size_t end) {
-  constexpr std::size_t size = BlockColoring::block_size;
+  const auto first_entry = [&](std::size_t b) {
+    return graph.offsets[std::min(graph.size(), b * size)];
+  };
   LowerBlocks result;
+  // Room for all, so that none needs a branch, which would be foretold badly.
+  result.blocks.resize(first_entry(end) - first_entry(begin) + 1);
+  std::size_t count = 0;
   for (std::size_t b = begin; b < end; ++b) {
-    const std::size_t nodes_end = std::min(graph.size(), (b + 1) * size);
     Index last = no_index;
-    for (Index e = graph.offsets[b * size]; e < graph.offsets[nodes_end]; ++e) {
-      const Index other = graph.neighbors[e] / size;
-      if (other < b && other != last) result.blocks.push_back(last = other);
+    for (Index e = first_entry(b); e < first_entry(b + 1); ++e) {
+      const Index other = graph.neighbors[e] / Index{size};
+      const bool is_lower = other < b;
+      result.blocks[count] = other;
+      count += is_lower && other != last;
+      last = is_lower ? other : last;
     }
-    result.ends.push_back(result.blocks.size());
+    result.ends.push_back(count);
   }
+  result.blocks.resize(count);
+  result.blocks.shrink_to_fit();
   return result;
 }
 
 }  // namespace
 
 BlockColoring color_blocks(const Graph& graph, const Context& context) {
-  constexpr std::size_t size = BlockColoring::block_size, grain = 128;
+  constexpr std::size_t grain = 128;
   const std::size_t blocks = (graph.size() + size - 1) / size;
   std::vector<LowerBlocks> ranges((blocks + grain - 1) / grain);
   context.for_ranges(blocks, grain, [&](std::size_t begin, std::size_t end) {
