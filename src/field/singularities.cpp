@@ -1,15 +1,78 @@
 #include "meshgrain/singularities.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "field/jumps.h"
 #include "field/rosy.h"
+#include "field/with_symmetry.h"
 #include "util/collect.h"
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "field/singularities.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "field/symmetry_lanes.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace meshgrain {
+namespace HWY_NAMESPACE {
+namespace {
+
+/// Appends the triangles of [begin, end) around which some angle is so large that they might have
+/// an index: few, found without any angle.
+template <int N>
+void find_suspects(std::span<const Index> corners, const Vec3* normals, const Vec3* directions,
+                   Index begin, Index end, std::vector<Index>& suspects) {
+  // Three turns and the holonomy, of a fifth of half a step each, make less than half a step.
+  constexpr double most = std::numbers::pi / N / 5;
+  const Floats least_cosine = all(static_cast<float>(std::cos(most)));
+  const Floats most_tangent = all(static_cast<float>(std::tan(most / 2)));
+  for_range(begin, end, [&](const Ints& faces, Index first, Index count) {
+    std::array<Vec3s, 3> n, o;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Ints v = gather(corners.data() + k, faces + (faces + faces));
+      n[k] = gather(normals, v);
+      o[k] = gather(directions, v);
+    }
+    const Floats triple = dot(n[0], cross(n[1], n[2]));  // as in holonomy()
+    const Floats sum = all(1) + dot(n[0], n[1]) + dot(n[1], n[2]) + dot(n[2], n[0]);
+    Mask is_regular = hn::Lt(hn::Abs(triple), most_tangent * sum);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t next = (k + 1) % 3;
+      const Vec3s nearest = most_similar<N>(transport(o[next], n[next], n[k]), n[k], o[k]);
+      is_regular = hn::And(is_regular, hn::Gt(dot(o[k], nearest), least_cosine));
+    }
+    if (hn::AllTrue(Lanes(), is_regular)) return;
+    HWY_ALIGN float regular[most_lanes];
+    hn::Store(choose(is_regular, all(1), all(0)), Lanes(), regular);
+    for (Index k = 0; k < count; ++k) {
+      if (regular[k] == 0) suspects.push_back(first + k);
+    }
+  });
+}
+
+void suspects(std::span<const Index> corners, const std::vector<Vec3>& normals,
+              const OrientationField& field, Index begin, Index end, std::vector<Index>& result) {
+  with_rosy(field.rosy, [&]<int N>() {
+    find_suspects<N>(corners, normals.data(), field.directions.data(), begin, end, result);
+  });
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace meshgrain
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace meshgrain {
 namespace {
+
+HWY_EXPORT(suspects);
 
 constexpr double pi = std::numbers::pi;
 
@@ -44,12 +107,16 @@ std::vector<OrientationSingularity> orientation_singularities(const Mesh& triang
                                                               const Context& context) {
   using Singularity = OrientationSingularity;
   const auto look = [&](std::size_t begin, std::size_t end, std::vector<Singularity>& out) {
-    for (std::size_t f = begin; f < end; ++f) {
+    std::vector<Index> faces;
+    HWY_DYNAMIC_DISPATCH(suspects)
+    (triangles.faces.corners(), normals, field, static_cast<Index>(begin), static_cast<Index>(end),
+     faces);
+    for (const Index f : faces) {
       const auto v = triangles.faces[f];
       double total = holonomy(normals[v[0]], normals[v[1]], normals[v[2]]);
       for (std::size_t k = 0; k < 3; ++k) total += turn(normals, field, v[k], v[(k + 1) % 3]);
       const auto index = static_cast<int>(std::lround(total * field.rosy / (2 * pi)));
-      if (index != 0) out.push_back({static_cast<Index>(f), index});
+      if (index != 0) out.push_back({f, index});
     }
   };
   return collect<Singularity>(triangles.faces.size(), look, context);
@@ -78,3 +145,4 @@ std::vector<PositionSingularity> position_singularities(const Mesh& triangles, c
 }
 
 }  // namespace meshgrain
+#endif
