@@ -9,7 +9,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "field/lanes.h"
+#include "graph/lanes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace meshgrain {
