@@ -8,7 +8,6 @@
 #include "made_graph.h"
 #include "meshgrain/error.h"
 #include "meshgrain/normals.h"
-#include "meshgrain/shapes.h"
 #include "meshgrain/surface.h"
 
 namespace meshgrain {
@@ -82,21 +81,6 @@ TEST(VertexGraph, HasTheEdgesAndTheAreaOfTheMesh) {
 }
 
 /// Two right triangles make a square: its diagonal's cotangents are those of right angles.
-TEST(VertexGraph, NormalsAreThoseOfTheSurface) {
-  Mesh mesh = sample_shape("bracket", 1);
-  // Faces without a normal, and a vertex between such alone.
-  const auto count = static_cast<Index>(mesh.positions.size());
-  mesh.positions.insert(mesh.positions.end(), 3, mesh.positions[0]);
-  mesh.faces.push_back({0, count, count + 1});
-  mesh.faces.push_back({count, count + 2, count + 1});
-  const Graph graph = build_graph(mesh);
-  const std::vector<Vec3> normals = vertex_normals(mesh);
-  for (Index v = 0; v < graph.size(); ++v) {
-    EXPECT_LT((graph.normals[v] - normals[v]).norm(), 1e-5f) << v;
-  }
-  EXPECT_NEAR(total_area(graph), surface_area(mesh), 1e-5 * surface_area(mesh));
-}
-
 TEST(VertexGraph, WeightsAreCotangents) {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};

@@ -12,9 +12,4 @@ namespace meshgrain {
 std::vector<Vec3> vertex_normals(const Mesh& mesh, const VertexFaces& around, double crease_degrees,
                                  const Context& context);
 
-/// Makes unit vectors of normals that were summed up, of triangles without creases: anew where
-/// faces lie back to back, so that hardly anything is left of the sum.
-void finish_normals(const Mesh& mesh, const VertexFaces& around, std::vector<Vec3>& sums,
-                    const Context& context);
-
 }  // namespace meshgrain
