@@ -241,7 +241,6 @@ double Pipeline::surplus() const {
 }
 
 double Pipeline::count_to_aim_at() const {
-  if (options_.faces == OutputFaces::quads) return 1;  // strips can come as well as go
   return 1 + (surplus() - target_.tolerance()) / 2;
 }
 
