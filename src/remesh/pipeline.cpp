@@ -12,6 +12,7 @@
 #include "extract/remove_strips.h"
 #include "features/lines_abreast.h"
 #include "field/transfer.h"
+#include "finish/face_shape.h"
 #include "finish/smooth.h"
 #include "mesh/border.h"
 #include "mesh/long_edges.h"
@@ -387,6 +388,8 @@ bool Pipeline::add_faces(Extraction& extraction) {
   return stage_("extraction", [&] {
     Extraction quads = extraction;
     if (lattice_faces_ == OutputFaces::quads) split(quads);
+    // A row more is much where faces are large for what they cover: another attempt is better.
+    if (quads.mesh.faces.size() < few_faces) return false;
     const auto count = static_cast<double>(quads.mesh.faces.size());
     const double wanted = count / target_.count_ratio(extraction.mesh);
     const auto least = static_cast<std::size_t>(std::ceil((1 - strip_tolerance) * wanted - count));
