@@ -175,8 +175,8 @@ void Pipeline::find_lines() {
 
 bool Pipeline::is_coarse_for_bends() const {
   // Both were measured: beyond them the finer lattice only has more singularities.
-  constexpr double few_faces = 1500, little_bent = 0.945;
-  return area_ < few_faces * target_.face_area(area_) &&
+  constexpr double most_faces = 1500, little_bent = 0.945;
+  return area_ < most_faces * target_.face_area(area_) &&
          flattened_share(hierarchy_, 2 * std::pow(mean_length(), 2), context_) < little_bent;
 }
 
