@@ -384,38 +384,35 @@ bool Pipeline::take_faces_away(Extraction& extraction) {
 }
 
 bool Pipeline::add_faces(Extraction& extraction) {
-  if (options_.faces != OutputFaces::quads) return false;
-  return stage_("extraction", [&] {
-    Extraction quads = extraction;
-    if (lattice_faces_ == OutputFaces::quads) split(quads);
+  return change_quads(extraction, [&](Extraction& quads, double count, double wanted) {
     // A row more is much where faces are large for what they cover: another attempt is better.
     if (quads.mesh.faces.size() < few_faces) return false;
-    const auto count = static_cast<double>(quads.mesh.faces.size());
-    const double wanted = count / target_.count_ratio(extraction.mesh);
     const auto least = static_cast<std::size_t>(std::ceil((1 - strip_tolerance) * wanted - count));
     const auto most = static_cast<std::size_t>((1 + strip_tolerance) * wanted - count);
-    if (add_strips(quads, least, most, context_) < least) return false;
-    extraction = std::move(quads);
-    is_split_ = true;
-    return true;
+    return stage_("extraction", [&] { return add_strips(quads, least, most, context_) >= least; });
   });
 }
 
 bool Pipeline::take_strips(Extraction& extraction) {
+  return change_quads(extraction, [&](Extraction& quads, double count, double wanted) {
+    const auto least = static_cast<std::size_t>(std::ceil(count - (1 + strip_tolerance) * wanted));
+    const auto most = static_cast<std::size_t>(count - (1 - strip_tolerance) * wanted);
+    const std::size_t gone = remove_strips(quads, least, most, context_);
+    if (gone >= least) return true;
+    // Single quads for the rest, if these are fewer than the larger ones from before the split.
+    const std::size_t rest = least - gone;
+    return rest <= target_.faces_to_close(extraction.mesh, strip_tolerance) &&
+           reduce_faces(quads, posy_of(options_.faces), rest, context_) >= rest;
+  });
+}
+
+template <typename Change>
+bool Pipeline::change_quads(Extraction& extraction, const Change& change) {
   if (options_.faces != OutputFaces::quads) return false;
   Extraction quads = extraction;
   if (lattice_faces_ == OutputFaces::quads) split(quads);
   const auto count = static_cast<double>(quads.mesh.faces.size());
-  const double wanted = count / target_.count_ratio(extraction.mesh);
-  const auto least = static_cast<std::size_t>(std::ceil(count - (1 + strip_tolerance) * wanted));
-  const auto most = static_cast<std::size_t>(count - (1 - strip_tolerance) * wanted);
-  const std::size_t gone = remove_strips(quads, least, most, context_);
-  if (gone < least) {
-    // Single quads for the rest, if these are fewer than the larger ones from before the split.
-    const std::size_t rest = least - gone;
-    if (rest > target_.faces_to_close(extraction.mesh, strip_tolerance)) return false;
-    if (reduce_faces(quads, posy_of(options_.faces), rest, context_) < rest) return false;
-  }
+  if (!change(quads, count, count / target_.count_ratio(extraction.mesh))) return false;
   extraction = std::move(quads);
   is_split_ = true;
   return true;

@@ -74,6 +74,10 @@ class Pipeline {
   /// Strips of quads, and single ones for the rest. Returns whether that is better than fewer of
   /// the larger quads: what is left is split then, else as it was.
   bool take_strips(Extraction& extraction);
+  /// Pure quads: `change(quads, count, wanted)` is to bring what will be written from one number of
+  /// faces to the other. If it returns true that is kept, split; else all is as it was.
+  template <typename Change>
+  bool change_quads(Extraction& extraction, const Change& change);
   void drop_pieces();
 
   /// position_and_extract(), but there may be no faces.
