@@ -2,13 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 
 #include "made_graph.h"
 #include "meshgrain/error.h"
 #include "meshgrain/normals.h"
+#include "meshgrain/shapes.h"
 #include "meshgrain/surface.h"
+#include "util/angle.h"
 
 namespace meshgrain {
 namespace {
@@ -78,6 +82,31 @@ TEST(VertexGraph, HasTheEdgesAndTheAreaOfTheMesh) {
       EXPECT_NEAR(total_area(graph), surface_area(mesh), 1e-4 * surface_area(mesh));
     }
   }
+}
+
+TEST(QuickAngle, IsTheArcTangent) {
+  for (int k = 0; k <= 1000; ++k) {
+    const double angle = std::numbers::pi * k / 1000, scale = std::exp(angle - 1);
+    const double sine = scale * std::abs(std::sin(angle)), cosine = scale * std::cos(angle);
+    EXPECT_NEAR(quick_angle(sine, cosine), std::atan2(sine, cosine), 1e-15 * (1 + angle)) << k;
+  }
+  EXPECT_EQ(quick_angle(0, 0), 0);
+  EXPECT_EQ(quick_angle(0, -1), std::numbers::pi);
+}
+
+TEST(VertexGraph, NormalsAreThoseOfTheSurface) {
+  Mesh mesh = sample_shape("bracket", 1);
+  // Faces without a normal, and a vertex between such alone.
+  const auto count = static_cast<Index>(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(), 3, mesh.positions[0]);
+  mesh.faces.push_back({0, count, count + 1});
+  mesh.faces.push_back({count, count + 2, count + 1});
+  const Graph graph = build_graph(mesh);
+  const std::vector<Vec3> normals = vertex_normals(mesh);
+  for (Index v = 0; v < graph.size(); ++v) {
+    EXPECT_LT((graph.normals[v] - normals[v]).norm(), 1e-6f) << v;
+  }
+  EXPECT_NEAR(total_area(graph), surface_area(mesh), 1e-5 * surface_area(mesh));
 }
 
 /// Two right triangles make a square: its diagonal's cotangents are those of right angles.

@@ -2,11 +2,16 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
+#include <utility>
 
 #include "graph/nearest_neighbors.h"
 #include "mesh/vertex_faces.h"
+#include "mesh/vertex_measures.h"
 #include "mesh/vertex_normals.h"
+#include "mesh/vertex_ring.h"
 #include "meshgrain/error.h"
 #include "meshgrain/normals.h"
 
@@ -50,14 +55,28 @@ float cotangent(const Vec3& apex, const Vec3& a, const Vec3& b) {
   return sine > 0 ? u.dot(v) / sine : 0.0f;
 }
 
-/// The part of a triangle's area that belongs to its corner `a`: that of its Voronoi cell, cut to
-/// the triangle where that is obtuse (Meyer et al. 2003, "mixed area").
-float voronoi_share(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const float area = 0.5f * (b - a).cross(c - a).norm();
-  if ((b - a).dot(c - a) < 0) return area / 2;
-  if ((a - b).dot(c - b) < 0 || (a - c).dot(b - c) < 0) return area / 4;
-  return ((b - a).squaredNorm() * cotangent(c, a, b) + (c - a).squaredNorm() * cotangent(b, c, a)) /
-         8;
+/// Cotangents, from both sides of each edge.
+void weigh_edges(Graph& graph, const Mesh& mesh, const VertexFaces& around,
+                 const Context& context) {
+  graph.weights.assign(graph.neighbors.size(), 0);
+  context.for_ranges(graph.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (auto v = static_cast<Index>(begin); v < end; ++v) {
+      for (const Index f : around[v]) {
+        const auto face = mesh.faces[f];
+        const auto k =
+            static_cast<std::size_t>(std::find(face.begin(), face.end(), v) - face.begin());
+        const Index b = face[(k + 1) % 3], c = face[(k + 2) % 3];
+        const Vec3 &p = mesh.positions[v], &q = mesh.positions[b], &r = mesh.positions[c];
+        graph.weights[graph.entry(v, b)] += 0.5f * cotangent(r, p, q);
+        graph.weights[graph.entry(v, c)] += 0.5f * cotangent(q, p, r);
+      }
+      // Weights must be positive for the local steps to lower the energy; obtuse pairs count little
+      // instead of less than nothing, needles do not outweigh everything else.
+      for (std::size_t e = graph.offsets[v]; e < graph.offsets[v + 1]; ++e) {
+        graph.weights[e] = std::clamp(graph.weights[e], 0.01f, 10.0f);
+      }
+    }
+  });
 }
 
 void require_triangles(const Mesh& mesh) {
@@ -70,55 +89,29 @@ Graph vertex_graph(const Mesh& mesh, const GraphOptions& options, const Context&
   Graph graph;
   graph.positions = mesh.positions;
   const VertexFaces around = vertex_faces(mesh, context);
-  graph.normals = vertex_normals(mesh, around, options.crease_degrees, context);
+  VertexMeasures measures = measure_vertices(mesh, around, context);
+  graph.areas = std::move(measures.areas);
+  graph.normals = options.crease_degrees < 0
+                      ? std::move(measures.normals)
+                      : vertex_normals(mesh, around, options.crease_degrees, context);
   gather_neighbors(
       graph,
       [&](Index v, std::vector<Index>& out) {
-        // In a closed fan every neighbour follows v in one face.
+        VertexRing ring;
+        if (ring.find(mesh, around[v], v)) {
+          out.insert(out.end(), ring.neighbors().begin(), ring.neighbors().end());
+          return;
+        }
         const std::size_t start = out.size();
-        const auto add = [&](Index f, std::size_t steps) {
-          const auto face = mesh.faces[f];
-          const std::size_t k = face[0] == v ? 0 : face[1] == v ? 1 : 2;
-          const Index w = face[(k + steps) % 3];
-          const auto first = out.begin() + static_cast<std::ptrdiff_t>(start);
-          if (w != v && std::find(first, out.end(), w) == out.end()) out.push_back(w);
-        };
-        for (const Index f : around[v]) add(f, 1);
-        for (const Index f : around[v]) add(f, 2);
-        std::sort(out.begin() + static_cast<std::ptrdiff_t>(start), out.end());
+        for (const Index f : around[v]) {
+          for (const Index w : mesh.faces[f]) {
+            if (w != v) out.push_back(w);
+          }
+        }
+        sort_unique_from(out, start);
       },
       context);
-
-  graph.areas.assign(graph.size(), 0);
-  const bool cotangents = options.weights == GraphWeights::geometric;
-  if (cotangents) graph.weights.assign(graph.neighbors.size(), 0);
-  context.for_ranges(graph.size(), grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      const auto neighbors = graph.neighbors_of(v);
-      const Vec3& p = mesh.positions[v];
-      for (const Index f : around[v]) {
-        const auto face = mesh.faces[f];
-        const std::size_t k = static_cast<std::size_t>(
-            std::find(face.begin(), face.end(), static_cast<Index>(v)) - face.begin());
-        const Index b = face[(k + 1) % 3], c = face[(k + 2) % 3];
-        graph.areas[v] += voronoi_share(p, mesh.positions[b], mesh.positions[c]);
-        if (!cotangents) continue;
-        const auto entry = [&](Index w) -> float& {
-          const auto it = std::lower_bound(neighbors.begin(), neighbors.end(), w);
-          return graph.weights[graph.offsets[v] + static_cast<std::size_t>(it - neighbors.begin())];
-        };
-        entry(b) += 0.5f * cotangent(mesh.positions[c], p, mesh.positions[b]);
-        entry(c) += 0.5f * cotangent(mesh.positions[b], p, mesh.positions[c]);
-      }
-      // Weights must be positive for the local steps to lower the energy; obtuse pairs count little
-      // instead of less than nothing, needles do not outweigh everything else.
-      if (cotangents) {
-        for (std::size_t e = graph.offsets[v]; e < graph.offsets[v + 1]; ++e) {
-          graph.weights[e] = std::clamp(graph.weights[e], 0.01f, 10.0f);
-        }
-      }
-    }
-  });
+  if (options.weights == GraphWeights::geometric) weigh_edges(graph, mesh, around, context);
   return graph;
 }
 

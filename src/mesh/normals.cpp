@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <span>
+#include <utility>
 
 #include "mesh/vertex_normals.h"
 
@@ -42,7 +43,7 @@ struct Corner {
   Index previous, next;
 };
 
-Corner corner(const Mesh& mesh, std::span<const Vec3> face_normals, Index f, Index v) {
+Corner corner(const Mesh& mesh, const Vec3& face_normal, Index f, Index v) {
   const std::span<const Index> face = mesh.faces[f];
   const std::size_t i =
       static_cast<std::size_t>(std::find(face.begin(), face.end(), v) - face.begin());
@@ -51,7 +52,7 @@ Corner corner(const Mesh& mesh, std::span<const Vec3> face_normals, Index f, Ind
   const Vector3d p = mesh.positions[v].cast<double>();
   const Vector3d a = mesh.positions[next].cast<double>() - p;
   const Vector3d b = mesh.positions[previous].cast<double>() - p;
-  const Vector3d normal = face_normals[f].cast<double>();
+  const Vector3d normal = face_normal.cast<double>();
   const Vector3d cross = a.cross(b);
   double angle = std::atan2(cross.norm(), a.dot(b));
   if (cross.dot(normal) < 0) angle = 2 * std::numbers::pi - angle;  // a reflex corner of a polygon
@@ -84,6 +85,52 @@ bool on_crease(std::span<const Corner> corners, double cosine, std::vector<EdgeE
   }
   return false;
 }
+
+/// Finds the normals of vertices one by one, or zero; `normal_of(f)` is that of a face.
+template <typename NormalOf>
+class NormalFinder {
+ public:
+  NormalFinder(const Mesh& mesh, const VertexFaces& around, double crease_degrees,
+               const NormalOf& normal_of)
+      : mesh_(mesh),
+        around_(around),
+        creases_(crease_degrees >= 0),
+        cosine_(std::cos(crease_degrees * std::numbers::pi / 180)),
+        normal_of_(normal_of) {}
+
+  Vec3 at(Index v) {
+    corners_.clear();
+    Index last = no_index;
+    for (const Index f : around_[v]) {
+      if (f == std::exchange(last, f)) continue;
+      const Vec3 normal = normal_of_(f);
+      if (!normal.isZero(0)) corners_.push_back(corner(mesh_, normal, f, v));
+    }
+    if (corners_.empty()) return Vec3::Zero();
+    Vector3d sum = Vector3d::Zero();
+    double angles = 0;
+    const Corner* widest = &corners_.front();
+    for (const Corner& c : corners_) {
+      sum += c.angle * c.normal;
+      angles += c.angle;
+      // Rounding must not decide between angles that are equal by design.
+      if (c.angle > widest->angle * (1 + 1e-5)) widest = &c;
+    }
+    // Faces that lie back to back cancel; one side is then as good as the other.
+    const bool one_face = (creases_ && on_crease(corners_, cosine_, ends_)) ||
+                          sum.norm() <= 1e-6 * angles || angles == 0;
+    return (one_face ? widest->normal : sum).normalized().cast<float>();
+  }
+
+ private:
+  const Mesh& mesh_;
+  const VertexFaces& around_;
+  bool creases_;
+  double cosine_;
+  const NormalOf& normal_of_;
+  std::vector<Corner> corners_;
+  std::vector<EdgeEnd> ends_;
+};
 
 /// Gives each vertex without a normal (zero) that of the vertex which a walk along the faces from
 /// all others reaches it from first, or (0, 0, 1).
@@ -121,40 +168,27 @@ std::vector<Vec3> vertex_normals(const Mesh& mesh, const VertexFaces& around, do
       face_normals[f] = face_normal(mesh.positions, mesh.faces[f]);
   });
 
-  const bool creases = crease_degrees >= 0;
-  const double cosine = std::cos(crease_degrees * std::numbers::pi / 180);
-  std::vector<Vec3> normals(mesh.positions.size(), Vec3::Zero());
+  const auto normal_of = [&](Index f) { return face_normals[f]; };
+  std::vector<Vec3> normals(mesh.positions.size());
   context.for_ranges(normals.size(), 4096, [&](std::size_t begin, std::size_t end) {
     context.check();
-    std::vector<Corner> corners;
-    std::vector<EdgeEnd> ends;
-    for (std::size_t v = begin; v < end; ++v) {
-      corners.clear();
-      Index last = no_index;
-      for (const Index f : around[v]) {
-        if (f != last && !face_normals[f].isZero(0))
-          corners.push_back(corner(mesh, face_normals, f, static_cast<Index>(v)));
-        last = f;
-      }
-      if (corners.empty()) continue;
-
-      Vector3d sum = Vector3d::Zero();
-      double angles = 0;
-      const Corner* widest = &corners.front();
-      for (const Corner& c : corners) {
-        sum += c.angle * c.normal;
-        angles += c.angle;
-        // Rounding must not decide between angles that are equal by design.
-        if (c.angle > widest->angle * (1 + 1e-5)) widest = &c;
-      }
-      // Faces that lie back to back cancel; one side is then as good as the other.
-      const bool one_face = (creases && on_crease(corners, cosine, ends)) ||
-                            sum.norm() <= 1e-6 * angles || angles == 0;
-      normals[v] = (one_face ? widest->normal : sum).normalized().cast<float>();
-    }
+    NormalFinder finder(mesh, around, crease_degrees, normal_of);
+    for (std::size_t v = begin; v < end; ++v) normals[v] = finder.at(static_cast<Index>(v));
   });
   fill_missing(mesh, around, normals);
   return normals;
+}
+
+void complete_normals(const Mesh& mesh, const VertexFaces& around, std::vector<Vec3>& normals,
+                      const Context& context) {
+  const auto normal_of = [&](Index f) { return face_normal(mesh.positions, mesh.faces[f]); };
+  context.for_ranges(normals.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    NormalFinder finder(mesh, around, -1, normal_of);
+    for (std::size_t v = begin; v < end; ++v) {
+      if (normals[v].isZero(0)) normals[v] = finder.at(static_cast<Index>(v));
+    }
+  });
+  fill_missing(mesh, around, normals);
 }
 
 }  // namespace meshgrain

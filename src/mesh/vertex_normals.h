@@ -12,4 +12,8 @@ namespace meshgrain {
 std::vector<Vec3> vertex_normals(const Mesh& mesh, const VertexFaces& around, double crease_degrees,
                                  const Context& context);
 
+/// Finds those of triangles without creases that are zero so far, as where faces lie back to back.
+void complete_normals(const Mesh& mesh, const VertexFaces& around, std::vector<Vec3>& normals,
+                      const Context& context);
+
 }  // namespace meshgrain
