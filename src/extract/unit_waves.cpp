@@ -25,25 +25,35 @@ void UnitWaves::start(Index h) {
   places_.emplace_back();
   nearest_.emplace_back();
   contacts_.emplace_back();
+  std::vector<Visit> visits;
   for (int unit = 0; unit < carrier_.units(); ++unit) {
     State out = carrier_.state(h, unit);
-    for (int side = 0; side < 3; ++side, out = carrier_.along(out)) visit_from_start(out);
+    for (int side = 0; side < 3; ++side, out = carrier_.along(out)) step_from_start(out, visits);
   }
+  for (const Visit& next : visits) visit(next);
 }
 
-void UnitWaves::visit_from_start(const State& out) {
+void UnitWaves::step_from_start(const State& out, std::vector<Visit>& visits) const {
   if (!carrier_.shortens(out)) return;
-  visit(carrier_.leaving(out), carrier_.across(out), nowhere, wave_[UnitCarrier::triangle(out)]);
+  const std::uint32_t wave = wave_[UnitCarrier::triangle(out)];
+  step(carrier_.leaving(out), carrier_.across(out), nowhere, wave, visits);
 }
 
-void UnitWaves::visit(float cost, const State& to, Origin origin, std::uint32_t wave) {
+void UnitWaves::step(float cost, const State& to, Origin origin, std::uint32_t wave,
+                     std::vector<Visit>& visits) const {
   if (!(cost < radius_)) return;
   const std::uint32_t number = carrier_.number(to);
+  if (cost < labels_[number].cost) visits.push_back({number, Label::of(cost, wave, origin)});
+}
+
+void UnitWaves::visit(const Visit& visit) {
+  const auto& [number, next] = visit;
   Label& label = labels_[number];
-  if (label.cost <= cost) return;
-  if (label.cost == never || label.wave() != wave) places_[wave].push_back(number);
-  label = Label::of(cost, wave, origin);
-  put_in_line({cost, number});
+  if (label.cost <= next.cost) return;
+  const bool is_new = label.cost == never || label.wave() != next.wave();
+  if (is_new) places_[next.wave()].push_back(number);
+  label = next;
+  put_in_line({next.cost, number});
 }
 
 void UnitWaves::put_in_line(const BucketQueue::Entry& entry) {
@@ -74,32 +84,56 @@ bool UnitWaves::is_nearest(const Meeting& meeting) {
   return true;
 }
 
+/// `look(k, steps)` for all of `count` at once, as things are before; then the steps that they say,
+/// one after the other, so that the result does not depend on the threads.
+template <typename Look>
+void UnitWaves::make_steps(std::size_t count, const Look& look, std::vector<Meeting>& meetings,
+                           const Context& context) {
+  constexpr std::size_t grain = 512;
+  std::vector<Steps> parts((count + grain - 1) / grain);
+  context.for_ranges(count, grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) look(k, parts[begin / grain]);
+  });
+  for (const Steps& steps : parts) {
+    for (const std::uint32_t number : steps.contacts) meet(carrier_.state(number), meetings);
+  }
+  for (const Steps& steps : parts) {
+    for (const Visit& next : steps.visits) visit(next);
+  }
+}
+
 void UnitWaves::grow(std::vector<Meeting>& meetings, const Context& context) {
-  for (const std::uint32_t number : std::exchange(forgotten_, {})) come_back_to(number);
+  const std::vector<std::uint32_t> forgotten = std::exchange(forgotten_, {});
+  const auto come_back = [&](std::size_t k, Steps& steps) {
+    come_back_to(forgotten[k], steps.visits);
+  };
+  make_steps(forgotten.size(), come_back, meetings, context);
   while (queue_.take_bucket(batch_)) {
     context.check();
     sort_by_place();
-    for (std::size_t k = 0; k < batch_.size(); ++k) {
+    const auto go = [&](std::size_t k, Steps& steps) {
       get_ready(k);
       const auto [cost, number] = batch_[k];
-      if (cost == labels_[number].cost) go_on(number, meetings);  // else another has come since
-    }
+      if (cost == labels_[number].cost) go_on(number, steps);  // else another has come since
+    };
+    make_steps(batch_.size(), go, meetings, context);
   }
   queue_.clear();
   meet_at_contacts(meetings);
 }
 
-void UnitWaves::go_on(std::uint32_t number, std::vector<Meeting>& meetings) {
+void UnitWaves::go_on(std::uint32_t number, Steps& steps) const {
   const State in = carrier_.state(number);
-  const auto [cost, packed] = labels_[number];
+  const float cost = labels_[number].cost;
   const std::uint32_t wave = labels_[number].wave();
-  meet(in, meetings);
+  if (has_contact(in)) steps.contacts.push_back(number);
   if (wave_[UnitCarrier::triangle(in)] == wave || carrier_.gain(in)) return;
   const auto costs = carrier_.passing(in);
   State out = in;
   for (std::size_t side = 0; side < 2; ++side) {
     out = carrier_.along(out);
-    visit(cost + costs[side], carrier_.across(out), side == 0 ? previous_edge : edge_before, wave);
+    step(cost + costs[side], carrier_.across(out), side == 0 ? previous_edge : edge_before, wave,
+         steps.visits);
   }
 }
 
@@ -129,7 +163,13 @@ void UnitWaves::get_ready(std::size_t place) const {
   }
 }
 
-/// Looks for another wave that comes the other way through the same edge, or for an end.
+/// Whether another wave has come the other way through the same edge, or this one could end.
+bool UnitWaves::has_contact(const State& in) const {
+  const Label& label = labels_[carrier_.number(in)];
+  const Label& other = labels_[carrier_.number(carrier_.across(carrier_.opposite(in)))];
+  return (other.cost < never && other.wave() != label.wave()) || carrier_.gain(in) == 0;
+}
+
 void UnitWaves::meet(const State& in, std::vector<Meeting>& meetings) {
   const std::uint32_t here = carrier_.number(in);
   const std::uint32_t there = carrier_.number(carrier_.across(carrier_.opposite(in)));
@@ -230,17 +270,17 @@ void UnitWaves::forget_beyond(std::uint32_t number) {
 }
 
 /// By the waves that are beside it.
-void UnitWaves::come_back_to(std::uint32_t number) {
+void UnitWaves::come_back_to(std::uint32_t number, std::vector<Visit>& visits) const {
   const State out = carrier_.across(carrier_.state(number));
   const std::uint32_t triangle = UnitCarrier::triangle(out);
-  if (wave_[triangle] != no_index) visit_from_start(out);
+  if (wave_[triangle] != no_index) step_from_start(out, visits);
   State in = out;
   for (std::size_t side = 0; side < 2; ++side) {
     in = carrier_.back(in);
     const Label& label = labels_[carrier_.number(in)];
     if (label.cost == never || wave_[triangle] == label.wave() || carrier_.gain(in)) continue;
-    visit(label.cost + carrier_.passing(in)[side], carrier_.across(out),
-          side == 0 ? previous_edge : edge_before, label.wave());
+    step(label.cost + carrier_.passing(in)[side], carrier_.across(out),
+         side == 0 ? previous_edge : edge_before, label.wave(), visits);
   }
 }
 

@@ -79,18 +79,35 @@ class UnitWaves {
     Origin origin() const { return static_cast<Origin>(packed % 4); }
   };
 
+  /// A state that a wave could come to.
+  struct Visit {
+    std::uint32_t number;
+    Label label;
+  };
+  /// What a part of the waves would do next.
+  struct Steps {
+    std::vector<Visit> visits;
+    std::vector<std::uint32_t> contacts;  // states where waves may meet, or end
+  };
+
+  template <typename Look>
+  void make_steps(std::size_t count, const Look& look, std::vector<Meeting>& meetings,
+                  const Context& context);
   void sort_by_place();
   void get_ready(std::size_t place) const;
-  void go_on(std::uint32_t number, std::vector<Meeting>& meetings);
+  void go_on(std::uint32_t number, Steps& steps) const;
+  bool has_contact(const State& in) const;
   void meet(const State& in, std::vector<Meeting>& meetings);
   void meet_at_contacts(std::vector<Meeting>& meetings);
   bool is_nearest(const Meeting& meeting);
-  void visit(float cost, const State& to, Origin origin, std::uint32_t wave);
-  void visit_from_start(const State& out);
+  void step(float cost, const State& to, Origin origin, std::uint32_t wave,
+            std::vector<Visit>& visits) const;
+  void step_from_start(const State& out, std::vector<Visit>& visits) const;
+  void visit(const Visit& visit);
   void put_in_line(const BucketQueue::Entry& entry);
   void forget(std::uint32_t number);
   void forget_beyond(std::uint32_t number);
-  void come_back_to(std::uint32_t number);
+  void come_back_to(std::uint32_t number, std::vector<Visit>& visits) const;
 
   const UnitCarrier& carrier_;
   float radius_, reach_;
