@@ -98,7 +98,8 @@ TEST(Guides, AreFollowed) {
         EXPECT_EQ(statistics.inverted_quads, 0u);
         const auto wanted = static_cast<double>(count);
         EXPECT_NEAR(static_cast<double>(statistics.faces), wanted, 0.01 * wanted);
-        EXPECT_GE(made::followed(guides, output), 0.95);
+        // Where a curve bends, long edges cannot be within 10 degrees of it all along.
+        EXPECT_GE(made::followed(guides, output), count < 5000 ? 0.93 : 0.95);
       }
     }
   }

@@ -24,6 +24,7 @@
 #include "meshgrain/surface.h"
 #include "meshgrain/triangulate.h"
 #include "remesh/close_bad_quads.h"
+#include "remesh/count_search.h"
 #include "remesh/flattened_share.h"
 #include "remesh/notes.h"
 #include "remesh/take_out_noise.h"
@@ -233,6 +234,10 @@ void Pipeline::size_faces() {
   fit_lengths_to_borders(more_faces);
 }
 
+bool Pipeline::has_quads_alone() const {
+  return options_.faces == OutputFaces::quads && lattice_faces_ != options_.faces;
+}
+
 double Pipeline::surplus() const {
   const bool guided =
       std::ranges::any_of(options_.guides, [](const Guide& guide) { return guide.strength > 0; });
@@ -251,8 +256,10 @@ double Pipeline::faces_to_ask_for() const {
   const double cells = lattice_faces_ == OutputFaces::quads           ? 2
                        : lattice_faces_ == OutputFaces::quad_dominant ? 3
                                                                       : 4;
-  return count_to_aim_at() /
-         flattened_share(hierarchy_, cells * std::pow(mean_length(), 2), context_);
+  // Where its odd faces become quads there are more of these than cells. By how much was measured.
+  const double faces_a_cell = has_quads_alone() ? 1.1 : 1;
+  const double left = flattened_share(hierarchy_, cells * std::pow(mean_length(), 2), context_);
+  return count_to_aim_at() / (faces_a_cell * left);
 }
 
 bool Pipeline::fit_lengths_to_borders(double more_faces) {
@@ -332,10 +339,9 @@ void Pipeline::find_faces() {
   const double tolerance = target_.tolerance();
   const bool given = options_.fields != nullptr && !options_.fields->position.points.empty();
   double least_error = std::numeric_limits<double>::infinity();
-  bool has_room = true;  // beside borders that stay
-  // By how much (as logarithms) more faces were asked for than at first, and how many more there
-  // were for it, all attempts together: a single one may be off by as much as a row of cells.
-  double asked = 0, excess = 0;
+  bool has_room = true;       // beside borders that stay
+  bool is_changeable = true;  // whether faces can be taken away or added, as far as is known
+  CountSearch search;
   for (int attempt = 0; attempt < attempts; ++attempt) {
     complete_levels();
     PositionField positions = stage_("position field", [&] {
@@ -357,11 +363,11 @@ void Pipeline::find_faces() {
       fields().position = std::move(positions);
     }
     if (given || met) break;
-    excess += std::log(ratio) - asked;
-    const double mean_excess = excess / (attempt + 1);
-    const double aim = attempt < 3 ? count_to_aim_at() : 1.01;
-    const double more = std::clamp(std::log(aim) - mean_excess - asked, -1.4, 1.4);
-    asked += more;
+    const bool is_near = ratio < 1 + closing && ratio > 1 - surplus();
+    is_changeable = is_changeable && !is_near;
+    const double before = search.asked();
+    search.go_on(ratio, !is_changeable ? 1 : attempt < 3 ? count_to_aim_at() : 1.01);
+    const double more = search.asked() - before;
     if (!borders_.empty()) {
       has_room = fit_lengths_to_borders(std::exp(more));
       if (!has_room) break;
@@ -443,7 +449,7 @@ void Pipeline::smooth_faces() {
     if (options_.faces == OutputFaces::quads) {
       smoothing.evenness = 0.61 + 0.12 * options_.regularity;
     }
-    if (options_.faces == OutputFaces::triangles) smoothing.evenness = 0.83;
+    if (options_.faces == OutputFaces::triangles) smoothing.evenness = 0.8;
     if (options_.faces == OutputFaces::quad_dominant) smoothing.evenness = 0.48;
     const EdgeLength& lengths = fields().position.edge_length;
     if (!lengths.uniform() && nodes_are_vertices_) smoothing.relative_size = lengths;
@@ -601,7 +607,7 @@ double Pipeline::cancelling_cost(double regularity) const {
   if (regularity >= 1) return std::numeric_limits<double>::infinity();
   const double middle = lattice_faces_ == OutputFaces::quads           ? 9.3
                         : lattice_faces_ == OutputFaces::quad_dominant ? 15.6
-                                                                       : 14.0;
+                                                                       : 9.9;
   constexpr double least = 0.28;  // of that
   return middle * (least + (1 - least) * regularity / (1 - regularity));
 }
@@ -619,7 +625,7 @@ Extraction Pipeline::extract(const PositionField& positions) {
   } else if (nodes_are_vertices_) {
     extract.surface = &surface_;
     extract.features = &features_;
-    extract.only_quads = options_.faces == OutputFaces::quads && lattice_faces_ != options_.faces;
+    extract.only_quads = has_quads_alone();
     extract.manifold = options_.manifold || !borders_.empty();  // see finish_borders()
   } else {
     extract.border = border_of_faces(surface_, graph());

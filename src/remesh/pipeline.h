@@ -96,6 +96,8 @@ class Pipeline {
   /// Sorts the surface along a curve, and all that goes with its vertices.
   std::vector<Index> put_in_order();
 
+  /// Whether quads are asked for, and the cells of the lattice are to be these quads.
+  bool has_quads_alone() const;
   /// Which share of faces too many may be taken away again: more than the count may be off by only
   /// where that does no harm to sizes, guides, borders that stay, or the utmost regularity.
   double surplus() const;

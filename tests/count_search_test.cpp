@@ -1,0 +1,43 @@
+#include "remesh/count_search.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace meshgrain {
+namespace {
+
+/// How many attempts it takes to come within a hundredth where a lattice has so many times the
+/// faces that are wanted, as logarithms: `more` + `slope` * what is asked for.
+int attempts(double more, double slope) {
+  CountSearch search;
+  for (int count = 1; count <= 20; ++count) {
+    const double got = more + slope * search.asked();
+    if (std::abs(got) < 0.01) return count;
+    search.go_on(std::exp(got), 1);
+  }
+  return 21;
+}
+
+TEST(CountSearch, FindsWhatIsInProportionAtOnce) {
+  EXPECT_EQ(attempts(0.3, 1), 2);
+  EXPECT_EQ(attempts(-1.2, 1), 2);
+}
+
+/// As with creases so close that faces have a size of their own there.
+TEST(CountSearch, FindsWhatHardlyChanges) {
+  EXPECT_LE(attempts(0.6, 0.5), 6);
+  EXPECT_LE(attempts(0.9, 0.35), 9);
+}
+
+/// Chance must not be taken for a slope.
+TEST(CountSearch, StaysNearTheMeanOfAttemptsThatLieClose) {
+  CountSearch search;
+  for (const double error : {0.03, -0.02, 0.025, -0.035}) {
+    search.go_on(std::exp(search.asked() + error), 1);
+    EXPECT_LT(std::abs(search.asked()), 0.031);
+  }
+}
+
+}  // namespace
+}  // namespace meshgrain
