@@ -114,8 +114,8 @@ class Collapse {
     return corners;
   }
 
-  /// Gives each edge of the map, of all the edges of the surface between its two clusters, which
-  /// may disagree, the jump of the one that is nearest to the real distance of their roots.
+  /// Gives each edge of the map the jump of an edge of the surface between its two clusters. These
+  /// may disagree: where it is far from the real distance of the roots, the nearest one of all.
   void take_jumps(const FeatureLines& features, const FeatureEdges& edges,
                   const FeatureJumps& jumps, const std::vector<Index>& corners,
                   const Context& context) {
@@ -139,10 +139,31 @@ class Collapse {
         jumps_[e] = disks_.between_roots(i, j, is_aligned ? jumps.aligned({i, j}, jump) : jump);
       }
     });
-    std::vector<Index> vertex(graph_.size(), no_index);  // of each root that is one vertex
+    take_nearest_jumps(jumps, context);
+  }
+
+  void take_nearest_jumps(const FeatureJumps& jumps, const Context& context) {
+    constexpr float near_enough = 0.45f;  // edge lengths: any other jump would be farther off
+    const auto look_at_edges = [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+      for (auto e = static_cast<Index>(begin); e < end; ++e) {
+        const auto is_near = [&](Index h) {
+          const Index a = map_.origin(h), b = map_.target(h);
+          const Jump jump = lattice_.jump(h);
+          if (jump.t == std::array<int, 2>{0, 0}) return false;  // by any rotation
+          return deviation(a, b, jump.t) < near_enough * position_.edge_length[sources_[a]];
+        };
+        if (!is_near(2 * e) || !is_near(2 * e + 1)) out.push_back(e);
+      }
+    };
+    const std::vector<Index> far = collect<Index>(jumps_.size(), look_at_edges, context);
+    // Of each root that is one vertex, if it has such an edge.
+    std::vector<Index> vertex(graph_.size(), no_index);
+    for (const Index e : far) {
+      for (const Index h : {2 * e, 2 * e + 1}) vertex[sources_[map_.origin(h)]] = map_.origin(h);
+    }
     for (Index v = 0; v < map_.vertices(); ++v) {
       Index& other = vertex[sources_[v]];
-      other = other == no_index ? v : cut;
+      if (other != no_index && other != v) other = cut;
     }
     struct Found {
       Index edge;
@@ -193,7 +214,7 @@ class Collapse {
     return no_index;
   }
 
-  /// How far a jump is from the real distance between two vertices, in edge lengths.
+  /// How far a jump is from the real distance between two vertices.
   float deviation(Index from, Index to, const std::array<int, 2>& t) const {
     const Index i = sources_[from], j = sources_[to];
     const auto point = [&]<int S>() {
