@@ -11,7 +11,7 @@
 namespace meshgrain {
 namespace {
 
-constexpr std::size_t grain = 1024;
+constexpr std::size_t grain = 512, cheap_grain = 8192;
 
 }  // namespace
 
@@ -140,7 +140,7 @@ void NormalFilter::average(float reach, float spread) {
 
 void NormalFilter::move_vertices() {
   // The plane that each face should lie in goes through its center.
-  context_.for_ranges(facets_.size(), grain, [&](std::size_t begin, std::size_t end) {
+  context_.for_ranges(facets_.size(), cheap_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) {
       const auto face = std::as_const(mesh_.faces)[f];
       const Vec3 sum =
@@ -148,7 +148,7 @@ void NormalFilter::move_vertices() {
       offsets_[f] = normals_[f].dot(sum) / 3;
     }
   });
-  context_.for_ranges(mesh_.positions.size(), grain, [&](std::size_t begin, std::size_t end) {
+  context_.for_ranges(mesh_.positions.size(), cheap_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       if (stays_[v] || vertex_faces_[v].empty()) continue;
       Vec3& p = mesh_.positions[v];
