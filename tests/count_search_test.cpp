@@ -39,5 +39,12 @@ TEST(CountSearch, StaysNearTheMeanOfAttemptsThatLieClose) {
   }
 }
 
+TEST(CountSearch, AsksForMoreWhereThereIsNothing) {
+  CountSearch search;
+  search.go_on(0, 1);
+  EXPECT_GT(search.asked(), 1);
+  EXPECT_TRUE(std::isfinite(search.asked()));
+}
+
 }  // namespace
 }  // namespace meshgrain

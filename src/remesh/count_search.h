@@ -16,7 +16,8 @@ class CountSearch {
   /// An attempt with what was asked for has so many times the faces that are wanted; the next one
   /// is to have `aim` times as many as are wanted.
   void go_on(double ratio, double aim) {
-    const double got = std::log(ratio);
+    constexpr double least_ratio = 1e-2;  // there may be no faces at all
+    const double got = std::log(std::max(ratio, least_ratio));
     ++count_;
     sum_asked_ += asked_;
     sum_got_ += got;
