@@ -98,8 +98,10 @@ TEST(Guides, AreFollowed) {
         EXPECT_EQ(statistics.inverted_quads, 0u);
         const auto wanted = static_cast<double>(count);
         EXPECT_NEAR(static_cast<double>(statistics.faces), wanted, 0.01 * wanted);
-        // Where a curve bends, long edges cannot be within 10 degrees of it all along.
-        EXPECT_GE(made::followed(guides, output), count < 5000 ? 0.93 : 0.95);
+        // Where a loop bends most, the ends of an edge that follows it to within .04 of its length
+        // turn from it by 10 to 17 degrees if there are but 1,000 triangles.
+        const bool has_long_edges = faces == OutputFaces::triangles && count == 1000;
+        EXPECT_GE(made::followed(guides, output), has_long_edges ? 0.93 : 0.95);
       }
     }
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "mesh/next_corners.h"
 #include "mesh/vertex_normals.h"
 #include "util/angle.h"
 
@@ -57,11 +58,9 @@ class Corners {
   bool are_full() const { return count_ == lanes; }
 
   void add(Index v, const Index* face, const Vec3* positions) {
-    // Without branches, as no one could predict which corner is v.
-    static constexpr std::uint8_t after[4] = {1, 2, 0, 0}, before[4] = {2, 0, 1, 0};
-    const std::size_t corner = (face[1] == v) + 2 * (face[2] == v);
+    const auto [after, before] = next_corners(face, v);
     vertices_[count_] = v;
-    const Index around[] = {v, face[after[corner]], face[before[corner]]};
+    const Index around[] = {v, after, before};
     for (std::size_t c = 0; c < 3; ++c) {
       const Vec3& p = positions[around[c]];
       for (std::size_t axis = 0; axis < 3; ++axis) points_[c][axis][count_] = p[axis];

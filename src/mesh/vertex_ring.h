@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "mesh/next_corners.h"
 #include "mesh/vertex_faces.h"
 #include "meshgrain/mesh.h"
 
@@ -25,12 +26,9 @@ class VertexRing {
     last.fill(no_index);
     const Index* const corners = triangles.faces.corners().data();
     for (std::size_t k = 0; k < size_; ++k) {
-      const Index* const face = corners + std::size_t{3} * faces[k];
-      // Without branches, as no one could predict which corner is v.
-      static constexpr std::uint8_t after[4] = {1, 2, 0, 0}, before[4] = {2, 0, 1, 0};
-      const std::size_t corner = (face[1] == v) + 2 * (face[2] == v);
-      next[k] = face[after[corner]];
-      last[k] = face[before[corner]];
+      const auto [after, before] = next_corners(corners + std::size_t{3} * faces[k], v);
+      next[k] = after;
+      last[k] = before;
     }
     // Every neighbour comes after v in one face, and before it in another.
     next_ = order_of(next);
