@@ -11,7 +11,7 @@
 namespace meshgrain {
 namespace {
 
-constexpr std::size_t grain = 512;
+constexpr std::size_t grain = 128;
 constexpr std::size_t cheap_grain = 8192;  // for loops that take no longer than waking a thread
 
 }  // namespace

@@ -26,7 +26,7 @@
 namespace meshgrain {
 namespace {
 
-constexpr std::size_t grain = 1024;
+constexpr std::size_t grain = 256;
 
 /// The side that all faces would have if their areas were as even as their relative sizes ask for.
 float mean_side(const Mesh& mesh, const EdgeLength& relative, const Context& context) {

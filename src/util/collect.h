@@ -11,7 +11,7 @@ namespace meshgrain {
 /// order of the ranges, for any number of threads.
 template <typename Item, typename Find>
 std::vector<Item> collect(std::size_t count, const Find& find, const Context& context) {
-  constexpr std::size_t grain = 4096;
+  constexpr std::size_t grain = 1024;
   std::vector<std::vector<Item>> parts((count + grain - 1) / grain);
   context.for_ranges(count, grain, [&](std::size_t begin, std::size_t end) {
     find(begin, end, parts[begin / grain]);
