@@ -9,6 +9,7 @@
 #include <hwy/highway.h>
 
 #include "field/symmetry_lanes.h"
+#include "util/dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace meshgrain {
@@ -98,25 +99,21 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace meshgrain {
 
-HWY_EXPORT(prolong_orientations);
-HWY_EXPORT(restrict_orientations);
-HWY_EXPORT(prolong_positions);
-
 void prolong_orientations(const Graph& graph, const std::vector<Index>& parents, Index begin,
                           Index end, const Vec3* coarser, Vec3* values) {
-  HWY_DYNAMIC_DISPATCH(prolong_orientations)(graph, parents, begin, end, coarser, values);
+  MESHGRAIN_BEST_TARGET(prolong_orientations)(graph, parents, begin, end, coarser, values);
 }
 
 void restrict_orientations(const Graph& fine, const Graph& coarse, const Children& children,
                            int rosy, Index begin, Index end, const Vec3* finer, Vec3* values) {
-  HWY_DYNAMIC_DISPATCH(restrict_orientations)
+  MESHGRAIN_BEST_TARGET(restrict_orientations)
   (fine, coarse, children, rosy, begin, end, finer, values);
 }
 
 void prolong_positions(const Graph& graph, const LatticeFrame& frame,
                        const std::vector<Index>& parents, int posy, Index begin, Index end,
                        const Vec3* coarser, Vec3* values) {
-  HWY_DYNAMIC_DISPATCH(prolong_positions)
+  MESHGRAIN_BEST_TARGET(prolong_positions)
   (graph, frame, parents, posy, begin, end, coarser, values);
 }
 

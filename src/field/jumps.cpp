@@ -11,6 +11,7 @@
 #include <hwy/highway.h>
 
 #include "field/symmetry_lanes.h"
+#include "util/dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace meshgrain {
@@ -146,13 +147,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace meshgrain {
 
-HWY_EXPORT(find_jumps);
-
 std::vector<Jump> edge_jumps(const Graph& graph, const OrientationField& orientation,
                              const PositionField& position, PositionEnergy energy,
                              std::span<const std::array<Index, 2>> edges) {
   std::vector<Jump> jumps(edges.size());
-  HWY_DYNAMIC_DISPATCH(find_jumps)(graph, orientation, position, energy, edges, jumps.data());
+  MESHGRAIN_BEST_TARGET(find_jumps)(graph, orientation, position, energy, edges, jumps.data());
   return jumps;
 }
 
@@ -160,7 +159,7 @@ Jump edge_jump(const Graph& graph, const OrientationField& orientation,
                const PositionField& position, PositionEnergy energy, Index i, Index j) {
   const std::array<std::array<Index, 2>, 1> edge{{{i, j}}};
   Jump jump;
-  HWY_DYNAMIC_DISPATCH(find_jumps)(graph, orientation, position, energy, edge, &jump);
+  MESHGRAIN_BEST_TARGET(find_jumps)(graph, orientation, position, energy, edge, &jump);
   return jump;
 }
 

@@ -8,6 +8,7 @@
 #include <hwy/highway.h>
 
 #include "field/symmetry_lanes.h"
+#include "util/dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace meshgrain {
@@ -118,12 +119,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace meshgrain {
 
-HWY_EXPORT(relax);
-
 void relax_orientations(const Graph& graph, const DirectionConstraints& constraints, int rosy,
                         OrientationEnergy energy, std::span<const Index> nodes, const Vec3* field,
                         Vec3* values) {
-  HWY_DYNAMIC_DISPATCH(relax)(graph, constraints, rosy, energy, nodes, field, values);
+  MESHGRAIN_BEST_TARGET(relax)(graph, constraints, rosy, energy, nodes, field, values);
 }
 
 }  // namespace meshgrain

@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include "field/symmetry_lanes.h"
+#include "util/dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace meshgrain {
@@ -121,12 +122,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace meshgrain {
 
-HWY_EXPORT(relax);
-
 void relax_positions(const Graph& graph, const LatticeFrame& frame,
                      const LineConstraints& constraints, int posy, PositionEnergy energy,
                      std::span<const Index> nodes, const Vec3* field, Vec3* values) {
-  HWY_DYNAMIC_DISPATCH(relax)(graph, frame, constraints, posy, energy, nodes, field, values);
+  MESHGRAIN_BEST_TARGET(relax)(graph, frame, constraints, posy, energy, nodes, field, values);
 }
 
 }  // namespace meshgrain

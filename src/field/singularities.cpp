@@ -17,6 +17,7 @@
 #include <hwy/highway.h>
 
 #include "field/symmetry_lanes.h"
+#include "util/dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace meshgrain {
@@ -72,8 +73,6 @@ HWY_AFTER_NAMESPACE();
 namespace meshgrain {
 namespace {
 
-HWY_EXPORT(suspects);
-
 constexpr double pi = std::numbers::pi;
 
 /// The angle about `n` from one tangent vector to another.
@@ -108,7 +107,7 @@ std::vector<OrientationSingularity> orientation_singularities(const Mesh& triang
   using Singularity = OrientationSingularity;
   const auto look = [&](std::size_t begin, std::size_t end, std::vector<Singularity>& out) {
     std::vector<Index> faces;
-    HWY_DYNAMIC_DISPATCH(suspects)
+    MESHGRAIN_BEST_TARGET(suspects)
     (triangles.faces.corners(), normals, field, static_cast<Index>(begin), static_cast<Index>(end),
      faces);
     for (const Index f : faces) {

@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include "graph/lanes.h"
+#include "util/dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace meshgrain {
@@ -139,8 +140,6 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace meshgrain {
 
-HWY_EXPORT(fit_all);
-
 void fit_regular_polygons(const Mesh& mesh, std::span<const Index> which,
                           const std::vector<Vec3>& normals, const PolygonFit& fit,
                           std::vector<Vec3>& places, std::vector<Index>& folded) {
@@ -151,7 +150,7 @@ void fit_regular_polygons(const Mesh& mesh, std::span<const Index> which,
     const double angle = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(n);
     turns[k] = {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))};
   }
-  HWY_DYNAMIC_DISPATCH(fit_all)(mesh, which, normals, fit, turns, places, folded);
+  MESHGRAIN_BEST_TARGET(fit_all)(mesh, which, normals, fit, turns, places, folded);
 }
 
 }  // namespace meshgrain

@@ -14,6 +14,7 @@
 #include <hwy/highway.h>
 
 #include "graph/lanes.h"
+#include "util/dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace meshgrain {
@@ -74,8 +75,6 @@ HWY_AFTER_NAMESPACE();
 namespace meshgrain {
 namespace {
 
-HWY_EXPORT(score_edges);
-
 /// Proposals by rounds, first within ranges of nodes, then for those that wait for a node of
 /// another range within larger ones. Each pair is better than all that its nodes could still have,
 /// so that it does not matter who comes first, nor that a range may learn late what another one
@@ -97,7 +96,7 @@ class PairMatching {
       nodes.resize(end - begin);
       std::iota(nodes.begin(), nodes.end(), static_cast<Index>(begin));
       std::vector<Index> ties;
-      HWY_DYNAMIC_DISPATCH(score_edges)
+      MESHGRAIN_BEST_TARGET(score_edges)
       (graph_, static_cast<Index>(begin), static_cast<Index>(end), scores_.get(), proposal_.get(),
        ties);
       for (const Index i : ties) proposal_[i] = best_neighbor(i);

@@ -11,6 +11,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "util/dispatch.h"
 #ifndef MESHGRAIN_GRAPH_MERGED_ROWS
 #define MESHGRAIN_GRAPH_MERGED_ROWS
 namespace meshgrain {
@@ -145,8 +146,6 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace meshgrain {
 
-HWY_EXPORT(merge_rows);
-
 void merge_edges(const Graph& fine, const std::vector<Index>& parents, const Children& children,
                  Graph& coarse, const Context& context) {
   constexpr std::size_t grain = 2048;
@@ -154,8 +153,8 @@ void merge_edges(const Graph& fine, const std::vector<Index>& parents, const Chi
   coarse.offsets.assign(n + 1, 0);
   std::vector<MergedRows> parts((n + grain - 1) / grain);
   context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
-    parts[begin / grain] = HWY_DYNAMIC_DISPATCH(merge_rows)(fine, parents, children, begin, end,
-                                                            coarse.offsets.data() + begin + 1);
+    parts[begin / grain] = MESHGRAIN_BEST_TARGET(merge_rows)(fine, parents, children, begin, end,
+                                                             coarse.offsets.data() + begin + 1);
   });
   for (std::size_t k = 0; k < n; ++k) coarse.offsets[k + 1] += coarse.offsets[k];
   coarse.neighbors.resize(coarse.offsets[n]);

@@ -16,6 +16,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "util/dispatch.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace meshgrain {
 namespace HWY_NAMESPACE {
@@ -165,15 +167,13 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace meshgrain {
 
-HWY_EXPORT(measure_range);
-
 VertexMeasures measure_vertices(const Mesh& mesh, const VertexFaces& around,
                                 const Context& context) {
   const std::size_t count = mesh.positions.size();
   VertexMeasures result{std::vector<Vec3>(count, Vec3::Zero()), std::vector<float>(count, 0)};
   context.for_ranges(count, 4096, [&](std::size_t begin, std::size_t end) {
     context.check();
-    HWY_DYNAMIC_DISPATCH(measure_range)(mesh, around, begin, end, result);
+    MESHGRAIN_BEST_TARGET(measure_range)(mesh, around, begin, end, result);
   });
   complete_normals(mesh, around, result.normals, context);
   return result;
