@@ -189,7 +189,7 @@ TEST(Hierarchy, BlocksOfAColorDoNotTouch) {
   for (std::size_t l = 0; l < hierarchy.levels.size(); ++l) {
     const Graph& graph = hierarchy.levels[l];
     const BlockColoring& coloring = hierarchy.colorings[l];
-    constexpr std::size_t size = BlockColoring::block_size;
+    const std::size_t size = coloring.block_size;
     std::vector<std::size_t> color((graph.size() + size - 1) / size, coloring.colors.size());
     for (std::size_t c = 0; c < coloring.colors.size(); ++c) {
       for (const Index b : coloring.colors[c]) color[b] = c;

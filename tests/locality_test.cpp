@@ -115,15 +115,20 @@ TEST(Locality, SweepsReachOneEdgeFurtherEach) {
 }
 
 /// Mending fields after damage: from the fields as they were, a restart on what lies within two
-/// edge lengths of the damage changes nothing beyond, to the last bit, and ends about as smooth as
-/// the old values, which it forgets on the coarse levels.
+/// edge lengths of the damage changes nothing beyond, to the last bit. It forgets the old values on
+/// the coarse levels, and may end at a worse lattice in one place and a better one in the next:
+/// over many places it ends as smooth as they were.
 TEST(Locality, ARestartMendsTheRegionOnly) {
   const Context context(2);
   const Mesh mesh = sample_shape("bracket");
   const float rho = 4 * static_cast<float>(edge_lengths(mesh).mean);
   const Solved whole = solve(mesh, rho);
-  for (const bool remove : {false, true}) {
-    const Damage damaged = damage(mesh, mesh.positions.size() / 2, rho, remove);
+  double before[2] = {}, after[2] = {};  // energies of orientations and positions
+  for (int place = 0; place < 12; ++place) {
+    const bool remove = place % 2 == 1;
+    SCOPED_TRACE("place " + std::to_string(place));
+    const std::size_t vertex = mesh.positions.size() * (static_cast<std::size_t>(place) + 1) / 13;
+    const Damage damaged = damage(mesh, vertex, rho, remove);
     const Hierarchy hierarchy = build_hierarchy(build_graph(damaged.mesh));
     const auto near = [&](Index i) {
       return (mesh.positions[i] - damaged.centre).norm() < 3 * rho;
@@ -140,26 +145,28 @@ TEST(Locality, ARestartMendsTheRegionOnly) {
       Vec3& d = start.directions[i];
       d = (d - n * n.dot(d)).normalized();
     }
+    const auto mend = [&](auto& solver, const auto& field, int which) {
+      solver.set_field(field);
+      const double energy = solver.energy(context);
+      solver.restart(region);
+      solver.solve(context);
+      EXPECT_LT(solver.energy(context), 1.25 * energy);
+      before[which] += energy;
+      after[which] += solver.energy(context);
+      return solver.field();
+    };
     const auto orientation = OrientationSolver::create(hierarchy, {});
-    orientation->set_field(start);
-    const double before = orientation->energy(context);
-    orientation->restart(region);
-    orientation->solve(context);
-    EXPECT_LT(orientation->energy(context), 1.05 * before);
-    const OrientationField directions = orientation->field();
+    const OrientationField directions = mend(*orientation, start, 0);
     const auto position = PositionSolver::create(hierarchy, directions, rho, {});
-    position->set_field(whole.position);
-    const double positions_before = position->energy(context);
-    position->restart(region);
-    position->solve(context);
-    EXPECT_LT(position->energy(context), 1.05 * positions_before);
-    const PositionField points = position->field();
+    const PositionField points = mend(*position, whole.position, 1);
     for (Index i = 0; i < mesh.positions.size(); ++i) {
       if (near(i)) continue;
       EXPECT_EQ(directions.directions[i], whole.orientation.directions[i]);
       EXPECT_EQ(points.points[i], whole.position.points[i]);
     }
   }
+  EXPECT_LT(after[0], before[0]);
+  EXPECT_LT(after[1], before[1]);
 }
 
 /// Between two crosses at one node, in degrees: at most 45.

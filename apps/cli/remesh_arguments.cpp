@@ -269,7 +269,7 @@ void add_options(CLI::App& app, Arguments& a) {
   method(add_choice(app, "--solver", o.solver.schedule, schedules, "SOLVER",
                     "blocks (parallel Gauss-Seidel, default), random (order) or jacobi"));
   method(app.add_option("--sweeps", o.solver.sweeps,
-                        "on each level (6, but 2 on each of the three finest)")
+                        "on each level (6 or 8, but 1 or 2 on each of the three finest)")
              ->check(CLI::Range(1, 1000000))
              ->type_name("N"));
   method(app.add_flag("--single-level", a.single_level, "no multiresolution"));

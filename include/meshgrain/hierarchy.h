@@ -23,7 +23,8 @@ struct Children {
 /// group are neighbours. Blocks of a group can be swept at once, each in the order of its nodes, by
 /// different threads or in different SIMD lanes: the result is the same for any number of either.
 struct BlockColoring {
-  static constexpr std::size_t block_size = 64;
+  static constexpr std::size_t longest = 64;
+  std::size_t block_size = longest;        ///< Nodes a block, but for the last.
   std::vector<std::vector<Index>> colors;  ///< The blocks of each colour.
 };
 

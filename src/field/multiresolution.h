@@ -142,16 +142,22 @@ class Multiresolution {
  private:
   static constexpr std::size_t grain = 2048;
   static constexpr std::size_t at_once = 16;  // nodes, as many as the widest SIMD units have lanes
+  static constexpr std::size_t nodes_a_range = 256;  // at least: waking a thread takes as long
 
   int coarsest() const { return static_cast<int>(hierarchy_.levels.size()) - 1; }
   const Graph& graph() const { return hierarchy_.levels[static_cast<std::size_t>(level_)]; }
+  const BlockColoring& coloring() const {
+    return hierarchy_.colorings[static_cast<std::size_t>(level_)];
+  }
 
   /// On the current level.
   int sweeps() const {
     if (options_.sweeps > 0) return options_.sweeps;
     constexpr int fine_levels = 3;
     constexpr std::size_t large = 30000;  // nodes: with enough levels below the fine ones
-    if (!options_.multiresolution || level_ >= fine_levels) return 6;
+    if (!options_.multiresolution) return 6;
+    // In short blocks less is passed on by a sweep.
+    if (level_ >= fine_levels) return coloring().block_size < BlockColoring::longest ? 8 : 6;
     return hierarchy_.levels[0].size() < large ? 2 : 1;
   }
 
@@ -201,17 +207,20 @@ class Multiresolution {
       return;
     }
     // Every block of a few goes on by one node, then all of them by the next one.
-    const BlockColoring& coloring = hierarchy_.colorings[static_cast<std::size_t>(level_)];
-    for (const std::vector<Index>& blocks : coloring.colors) {
-      context.for_ranges(blocks.size(), at_once, [&](std::size_t begin, std::size_t end) {
+    const std::size_t size = coloring().block_size;
+    const std::size_t batch = at_once * std::max<std::size_t>(1, nodes_a_range / (at_once * size));
+    for (const std::vector<Index>& blocks : coloring().colors) {
+      context.for_ranges(blocks.size(), batch, [&](std::size_t begin, std::size_t end) {
         std::array<Index, at_once> nodes;
-        for (std::size_t place = 0; place < BlockColoring::block_size; ++place) {
-          std::size_t count = 0;
-          for (std::size_t b = begin; b < end; ++b) {
-            const std::size_t i = blocks[b] * BlockColoring::block_size + place;
-            if (i < n && is_active(i)) nodes[count++] = static_cast<Index>(i);
+        for (std::size_t first = begin; first < end; first += at_once) {
+          for (std::size_t place = 0; place < size; ++place) {
+            std::size_t count = 0;
+            for (std::size_t b = first; b < std::min(end, first + at_once); ++b) {
+              const std::size_t i = blocks[b] * size + place;
+              if (i < n && is_active(i)) nodes[count++] = static_cast<Index>(i);
+            }
+            if (count > 0) body(std::span<const Index>(nodes.data(), count));
           }
-          if (count > 0) body(std::span<const Index>(nodes.data(), count));
         }
       });
     }

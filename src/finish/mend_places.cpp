@@ -125,7 +125,10 @@ class Mending {
       if (++tried > std::max(most_tried, mesh_.faces.size() / 100) || effort_left_ <= 0) break;
       Place place = around(f, f, rings);
       --place.bad;
-      place.may_cross = place.crossings > 0 && !options_.is_part && surface_crosses(place);
+      // What could not be parted must not keep faces turned inside out as well.
+      const bool is_last = demands_.quality <= 0;
+      place.may_cross =
+          place.crossings > 0 && !options_.is_part && (is_last || surface_crosses(place));
       if (!reshape(place)) restore(place);
     }
   }

@@ -1,11 +1,17 @@
 #include "graph/color_blocks.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace meshgrain {
 namespace {
 
-constexpr std::size_t size = BlockColoring::block_size;
+/// Nodes a block. Long blocks have fewer neighbours, and lie close together in memory. But each
+/// colour must have several times as many of them as there are SIMD lanes.
+std::size_t block_size(std::size_t nodes) {
+  constexpr std::size_t least_blocks = 96;
+  return std::clamp(std::bit_floor(nodes / least_blocks), std::size_t{1}, BlockColoring::longest);
+}
 
 /// The blocks before each block that have neighbours in it.
 struct LowerBlocks {
@@ -13,7 +19,7 @@ struct LowerBlocks {
   std::vector<Index> blocks;
 };
 
-LowerBlocks lower_blocks(const Graph& graph, std::size_t begin, std::size_t end) {
+LowerBlocks lower_blocks(const Graph& graph, std::size_t size, std::size_t begin, std::size_t end) {
   const auto first_entry = [&](std::size_t b) {
     return graph.offsets[std::min(graph.size(), b * size)];
   };
@@ -24,7 +30,7 @@ LowerBlocks lower_blocks(const Graph& graph, std::size_t begin, std::size_t end)
   for (std::size_t b = begin; b < end; ++b) {
     Index last = no_index;
     for (Index e = first_entry(b); e < first_entry(b + 1); ++e) {
-      const Index other = graph.neighbors[e] / Index{size};
+      const Index other = graph.neighbors[e] / static_cast<Index>(size);
       const bool is_lower = other < b;
       result.blocks[count] = other;
       count += is_lower && other != last;
@@ -41,12 +47,14 @@ LowerBlocks lower_blocks(const Graph& graph, std::size_t begin, std::size_t end)
 
 BlockColoring color_blocks(const Graph& graph, const Context& context) {
   constexpr std::size_t grain = 128;
+  const std::size_t size = block_size(graph.size());
   const std::size_t blocks = (graph.size() + size - 1) / size;
   std::vector<LowerBlocks> ranges((blocks + grain - 1) / grain);
   context.for_ranges(blocks, grain, [&](std::size_t begin, std::size_t end) {
-    ranges[begin / grain] = lower_blocks(graph, begin, end);
+    ranges[begin / grain] = lower_blocks(graph, size, begin, end);
   });
   BlockColoring result;
+  result.block_size = size;
   std::vector<Index> color;
   std::vector<bool> taken;
   for (const LowerBlocks& range : ranges) {

@@ -606,8 +606,8 @@ PositionField Pipeline::solve_positions() {
 double Pipeline::cancelling_cost(double regularity) const {
   if (regularity >= 1) return std::numeric_limits<double>::infinity();
   const double middle = lattice_faces_ == OutputFaces::quads           ? 9.3
-                        : lattice_faces_ == OutputFaces::quad_dominant ? 15.6
-                                                                       : 9.9;
+                        : lattice_faces_ == OutputFaces::quad_dominant ? 15.0
+                                                                       : 11.2;
   constexpr double least = 0.28;  // of that
   return middle * (least + (1 - least) * regularity / (1 - regularity));
 }
