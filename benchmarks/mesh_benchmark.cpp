@@ -28,8 +28,19 @@ void order(benchmark::State& state) {
          [](Mesh& mesh, const Context& context) { sort_along_curve(mesh, context); });
 }
 
+void coarsen_to_a_third(benchmark::State& state) {
+  Mesh input = shape();
+  sort_along_curve(input);
+  const auto mean = static_cast<float>(edge_lengths(input).mean);
+  change(state, input, [&](Mesh& mesh, const Context& context) {
+    coarsen(mesh, {1.2f * mean, 2.7f * mean}, std::vector<std::uint8_t>(mesh.positions.size(), 0),
+            context);
+  });
+}
+
 BENCHMARK(clean_up)->Name("clean")->Apply(with_threads);
 BENCHMARK(order)->Apply(with_threads);
+BENCHMARK(coarsen_to_a_third)->Name("coarsen")->Apply(with_threads);
 
 }  // namespace
 }  // namespace meshgrain::bench

@@ -8,8 +8,8 @@ from pathlib import Path
 from bench_picture import picture
 from bench_run import benchmarks, run, slope
 
-STAGES = ("read", "clean", "order", "graph", "hierarchy", "orientation field", "position field",
-          "extraction", "smoothing", "write")
+STAGES = ("read", "clean", "order", "coarsen", "graph", "hierarchy", "orientation field",
+          "position field", "extraction", "smoothing", "write")
 GIB, MIB = 2 ** 30, 2 ** 20
 
 

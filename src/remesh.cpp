@@ -48,6 +48,7 @@ void check(const RemeshOptions& options) {
 void prepare(Pipeline& pipeline, Mesh input) {
   pipeline.clean_up(std::move(input));
   pipeline.sharpen();
+  pipeline.coarsen();
   pipeline.refine();
   pipeline.build_graph();
   pipeline.find_lines();

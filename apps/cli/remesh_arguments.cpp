@@ -273,6 +273,9 @@ void add_options(CLI::App& app, Arguments& a) {
              ->check(CLI::Range(1, 1000000))
              ->type_name("N"));
   method(app.add_flag("--single-level", a.single_level, "no multiresolution"));
+  method(app.add_flag_callback(
+      "--no-coarsen", [&o] { o.coarsen = false; },
+      "solve over all vertices of the input, also where far fewer are enough"));
   method(add_choice(app, "--graph", o.graph.nodes, graph_nodes, "NODES",
                     "fields live on the input's vertices (default) or faces"));
   method(add_choice(app, "--weights", o.graph.weights, graph_weights, "WEIGHTS",

@@ -103,6 +103,7 @@ Json to_json(const RemeshOptions& o) {
                {"adaptive", o.sizing.adaptive},
                {"grading", o.sizing.grading},
                {"graph", o.graph.nodes == GraphNodes::faces ? "faces" : "vertices"},
+               {"coarsen", o.coarsen},
                {"weights", o.graph.weights == GraphWeights::geometric ? "geometric" : "uniform"},
                {"knn", o.graph.neighbors},
                {"crease_normals", o.graph.crease_degrees},

@@ -41,6 +41,9 @@ struct FeatureOptions {
   Creases creases = Creases::automatic;
   double crease_degrees = 40;  ///< Creases::by_angle: the least angle between the faces' normals.
   bool align_border = true;    ///< Whether the fields follow the border.
+  /// Whether marked edges that run too close to another line for the faces asked for are left out,
+  /// as creases are.
+  bool marks_may_go = false;
   /// How strongly orientations and positions are held to creases and marked edges. Extrinsic
   /// energies turn to them by themselves, and do better where creases meet at angles that no cross
   /// can follow.

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
 
@@ -25,6 +28,25 @@ void subdivide(Mesh& triangles, double max_length, const Context& context = Cont
 /// vertex, and interpolated too. Returns whether any edge was longer.
 bool subdivide(Mesh& triangles, std::vector<float>& max_lengths,
                const Context& context = Context());
+
+/// In units of the mesh.
+struct CoarseEdges {
+  float shortest;  ///< Shorter ones are collapsed.
+  float longest;   ///< None that is longer is made.
+};
+
+/// Collapses the short edges of a triangle mesh, as far as the surface allows it: pieces keep their
+/// borders and genus, faces do not turn over, the volume beside each edge stays, and vertices that
+/// are not inside of a surface or that are flagged in `stays` (one a vertex) keep their places.
+/// Returns which vertices of the mesh that was passed are left, in order.
+///
+/// Faces are collapsed together that are near each other in memory, as sort_along_curve() puts
+/// them: what is at the seams between such runs of faces stays.
+///
+/// Where the vertex of an edge comes to lie is told by the faces around it alone (memoryless
+/// simplification, Lindstrom and Turk 1999), so that nothing is kept of a vertex but its place.
+std::vector<Index> coarsen(Mesh& triangles, const CoarseEdges& edges,
+                           std::vector<std::uint8_t> stays, const Context& context);
 
 /// Puts vertices into the order of a Hilbert curve, and faces into the order of their first vertex,
 /// so that what is near on the surface is near in memory. Returns, for each new vertex, its index

@@ -34,24 +34,31 @@ bool FeatureLines::is_closed(std::size_t line) const {
   return v == vertices[end(line) - 1] && !std::binary_search(corners.begin(), corners.end(), v);
 }
 
-std::vector<EdgeOfLine> feature_edges(const Mesh& mesh, const FeatureOptions& options,
-                                      double edge_length, const Context& context) {
-  Edges rim, creases, marked;
+RimAndCreases rim_and_creases(const Mesh& mesh, const FeatureOptions& options,
+                              const Context& context) {
   if (options.creases == Creases::automatic) {
     auto found = rim_and_sharp_edges(mesh, flat_degrees, context);
-    creases = mechanical_creases(mesh, found);
-    rim = std::move(found.rim);
-  } else if (options.creases == Creases::by_angle) {
-    auto found = rim_and_sharp_edges(mesh, options.crease_degrees, context);
-    rim = std::move(found.rim);
-    for (const SharpEdge& edge : found.sharp) creases.push_back(edge.ends);
-  } else {
-    rim = rim_edges(mesh, context);
+    Edges creases = mechanical_creases(mesh, found);
+    return {std::move(found.rim), std::move(creases)};
   }
+  if (options.creases == Creases::by_angle) {
+    auto found = rim_and_sharp_edges(mesh, options.crease_degrees, context);
+    Edges creases;
+    for (const SharpEdge& edge : found.sharp) creases.push_back(edge.ends);
+    return {std::move(found.rim), std::move(creases)};
+  }
+  return {rim_edges(mesh, context), {}};
+}
+
+std::vector<EdgeOfLine> feature_edges(const Mesh& mesh, const FeatureOptions& options,
+                                      double edge_length, const Context& context) {
+  const auto [rim, creases] = rim_and_creases(mesh, options, context);
+  Edges marked;
   if (options.creases != Creases::none) marked = inner_marks(mesh, context);
+  const LineKind kind = options.marks_may_go ? LineKind::crease : LineKind::marked;
   std::vector<EdgeOfLine> edges;
   for (const auto& ends : rim) edges.push_back({ends, LineKind::border});
-  for (const auto& ends : marked) edges.push_back({ends, LineKind::marked});
+  for (const auto& ends : marked) edges.push_back({ends, kind});
   for (const auto& ends : creases) {
     const bool is_marked = std::binary_search(marked.begin(), marked.end(), ends);
     if (!is_marked) edges.push_back({ends, LineKind::crease});

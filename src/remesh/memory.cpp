@@ -23,6 +23,7 @@ constexpr double coarse_levels = 60;  // of the former: they go where no count w
 constexpr double node_of_large_cell = 130, large_cell = 500;
 constexpr double point = 130, neighbor = 32;  // of a cloud, each of its neighbours
 constexpr double input_vertex = 12, input_corner = 4;
+constexpr double dense_vertex = 80;  // more, until coarsen() has passed
 constexpr double written_corner = 65;
 constexpr double far_waves = 75;    // more, where singularities are cancelled however far apart
 constexpr double given_node = 250;  // of RemeshOptions::fields
@@ -92,6 +93,29 @@ Need needed_by_cloud(const Mesh& input, const RemeshOptions& options, const Targ
   return {points * (point + neighbor * neighbors), written * bytes_of_written_face(options)};
 }
 
+/// The fields, and what comes of them, over a surface of so many vertices: the second are `added`.
+Need needed_by_nodes(double vertices, double added, double area, const RemeshOptions& options,
+                     const Target& target) {
+  const double length = target.edge_length(area);
+  const bool is_large = (vertices + added) * length * length > large_cell * area;
+  const double node = node_of_vertex - (target.must_be_met() ? 0 : coarse_levels) +
+                      (is_large ? node_of_large_cell : 0);
+  const double written = area / target.face_area(area) * bytes_of_written_face(options);
+  return {vertices * node, added * node + written};
+}
+
+/// Either many vertices, or the fields over the few that are left of them.
+Need needed_by_dense_mesh(double vertices, const SurfaceSize& size, const RemeshOptions& options,
+                          const Target& target) {
+  constexpr double nodes_in_shortest_square = 0.75;  // measured
+  const double shortest = target.coarse_edges(options, size.area).shortest;
+  const double nodes =
+      std::min(vertices, nodes_in_shortest_square * size.area / (shortest * shortest));
+  const Need fields = needed_by_nodes(nodes, 0, size.area, options, target);
+  const double before = vertices * dense_vertex;
+  return {before, std::max(0.0, fields.input + fields.target - before)};
+}
+
 Need needed_by_mesh(const Mesh& input, const RemeshOptions& options, const Target& target,
                     const Context& context) {
   const SurfaceSize size = surface_size(input, context);
@@ -100,16 +124,14 @@ Need needed_by_mesh(const Mesh& input, const RemeshOptions& options, const Targe
   const auto vertices = static_cast<double>(input.positions.size());
   const double triangles = static_cast<double>(input.faces.corners().size()) -
                            2 * static_cast<double>(input.faces.size());
+  if (target.is_dense(options, input.positions.size(), size))
+    return needed_by_dense_mesh(vertices, size, options, target);
   const double added = added_triangles(input, triangles, size, target, options, context);
-  const double written = area / target.face_area(area) * bytes_of_written_face(options);
   // Two triangles come with each vertex that is put between others.
   if (options.graph.nodes == GraphNodes::vertices) {
-    const double length = target.edge_length(area);
-    const bool is_large = (vertices + added / 2) * length * length > large_cell * area;
-    const double node = node_of_vertex - (target.must_be_met() ? 0 : coarse_levels) +
-                        (is_large ? node_of_large_cell : 0);
-    return {vertices * node, added / 2 * node + written};
+    return needed_by_nodes(vertices, added / 2, area, options, target);
   }
+  const double written = area / target.face_area(area) * bytes_of_written_face(options);
   return {triangles * node_of_face, added * node_of_face + written};
 }
 
@@ -134,11 +156,7 @@ std::string amount(double bytes, double (*round)(double)) {
                      : fmt::format("{:.1f} GiB", round(10 * bytes / gib) / 10);
 }
 
-}  // namespace
-
-void check_memory(const Mesh& input, const RemeshOptions& options, const Context& context) {
-  if (options.memory_limit == 0) return;
-  const Need need = needed(input, options, context);
+void refuse_more_than_limit(const Need& need, const RemeshOptions& options) {
   const auto limit = static_cast<double>(options.memory_limit);
   if (need.input + need.target <= limit) return;
   const char* const less = need.input > limit        ? "take a coarser input"
@@ -147,6 +165,22 @@ void check_memory(const Mesh& input, const RemeshOptions& options, const Context
   throw Error(
       fmt::format("this may take {} of memory, more than the limit of {}: {}, or allow more",
                   amount(need.input + need.target, std::ceil), amount(limit, std::floor), less));
+}
+
+}  // namespace
+
+void check_memory(const Mesh& input, const RemeshOptions& options, const Context& context) {
+  if (options.memory_limit == 0) return;
+  refuse_more_than_limit(needed(input, options, context), options);
+}
+
+void check_memory_of_coarse(const Mesh& surface, double area, const RemeshOptions& options,
+                            const Target& target, const Context& context) {
+  if (options.memory_limit == 0) return;
+  const auto vertices = static_cast<double>(surface.positions.size());
+  Need need = needed_by_nodes(vertices, 0, area, options, target);
+  need.input += program + thread * context.threads();
+  refuse_more_than_limit(need, options);
 }
 
 }  // namespace meshgrain

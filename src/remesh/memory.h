@@ -1,6 +1,7 @@
 #pragma once
 
 #include "meshgrain/remesh.h"
+#include "remesh/target.h"
 
 namespace meshgrain {
 
@@ -8,5 +9,10 @@ namespace meshgrain {
 /// program as a whole. What it takes is estimated from measured runs: an upper bound, as a rule by
 /// no more than two thirds too high.
 void check_memory(const Mesh& input, const RemeshOptions& options, const Context& context);
+
+/// The same where coarsen() has left a surface of this area: on a rough one it may leave more than
+/// check_memory() expects.
+void check_memory_of_coarse(const Mesh& surface, double area, const RemeshOptions& options,
+                            const Target& target, const Context& context);
 
 }  // namespace meshgrain

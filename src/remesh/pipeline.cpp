@@ -15,19 +15,14 @@
 #include "finish/face_shape.h"
 #include "finish/smooth.h"
 #include "mesh/border.h"
-#include "mesh/long_edges.h"
-#include "mesh/refine_slivers.h"
-#include "meshgrain/clean.h"
 #include "meshgrain/error.h"
 #include "meshgrain/singularities.h"
 #include "meshgrain/statistics.h"
 #include "meshgrain/surface.h"
-#include "meshgrain/triangulate.h"
 #include "remesh/close_bad_quads.h"
 #include "remesh/count_search.h"
 #include "remesh/flattened_share.h"
 #include "remesh/notes.h"
-#include "remesh/take_out_noise.h"
 
 namespace meshgrain {
 namespace {
@@ -68,65 +63,6 @@ Pipeline::Pipeline(const Mesh& input, const RemeshOptions& options, const Contex
   }
 }
 
-void Pipeline::clean_up(Mesh input) {
-  stage_("clean", [&] {
-    result_.report.notes = describe(clean(input, context_));
-    frame_ = unit_frame(input);
-    aim_at(options_.faces);
-    enter(frame_, input);
-    const bool is_ready = is_cloud_ || input.faces.uniform_degree() == 3;
-    surface_ = is_ready ? std::move(input) : triangulate(input);
-    for (std::string& note : describe(orient_faces(surface_, context_))) {
-      result_.report.notes.push_back(std::move(note));
-    }
-    drop_pieces();
-  });
-}
-
-void Pipeline::sharpen() {
-  if (is_cloud_) return;
-  stage_("noise", [&] {
-    input_size_ = surface_size(surface_, context_);
-    const double side = target_.face_side(input_size_.area);
-    is_sharpened_ = take_out_noise(surface_, options_, side, result_.report.notes, context_);
-    if (is_sharpened_) input_size_ = surface_size(surface_, context_);
-  });
-  if (options_.lock_borders) locked_ = border_vertices(surface_, context_);
-}
-
-void Pipeline::refine() {
-  if (!is_cloud_) {
-    const double area = input_size_.area;
-    if (!(area > 0)) throw Error("the input has no surface: all of its faces are degenerate");
-    stage_("subdivide", [&] { split_long_edges(area, input_size_.edges); });
-    lay_guides(target_.edge_length(area));
-  }
-  stage_("order", [&] { put_in_order(); });
-}
-
-bool Pipeline::split_long_edges(double area, const EdgeLengths& edges) {
-  const double limit = target_.longest_input_edge(options_, area, edges.mean);
-  if (!(edges.max > limit)) return false;
-  std::vector<Index> faces = faces_with_long_edges(surface_, limit, context_);
-  if (refine_slivers(surface_, limit, faces, context_)) {
-    faces = faces_with_long_edges(surface_, limit, context_);
-  }
-  subdivide_faces(surface_, limit, std::move(faces), context_);
-  return true;
-}
-
-std::vector<Index> Pipeline::put_in_order() {
-  const std::size_t count = surface_.positions.size();
-  const std::vector<Index> order = sort_along_curve(surface_, context_);
-  if (!guides_.edges.empty()) renumber(guides_, order);
-  if (locked_.empty()) return order;
-  locked_.resize(count, 0);  // what was split off is no vertex of the input
-  std::vector<std::uint8_t> locked(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) locked[i] = locked_[order[i]];
-  locked_.swap(locked);
-  return order;
-}
-
 void Pipeline::build_graph() {
   hierarchy_ = {};
   hierarchy_.levels.push_back(
@@ -163,11 +99,10 @@ void Pipeline::find_lines() {
   if (is_cloud_ || !nodes_are_vertices_) return;
   if (options_.lock_borders) borders_ = find_border_loops(surface_, locked_, context_);
   stage_("features", [&] {
-    FeatureOptions options = options_.features;
+    FeatureOptions options = feature_options();
     if (options_.orientation_energy != OrientationEnergy::extrinsic) options.orient_creases = 1;
     // Triangles cannot follow two creases that meet at right angles.
     if (posy_of(options_.faces) == 6) options.align_creases = 0.3f;
-    if (is_sharpened_) options.creases = Creases::marked;
     features_ = find_features(surface_, options, guides_, target_.face_side(area_), context_);
     append(feature_constraints(features_));
     append(guide_constraints(guides_, features_.corners));
@@ -525,40 +460,6 @@ RemeshResult Pipeline::result() && {
   result_.mesh = std::move(extraction_.mesh);
   leave(frame_, result_.mesh);
   return std::move(result_);
-}
-
-void Pipeline::drop_pieces() {
-  if (is_cloud_ || options_.min_component == 0) return;
-  const double area = options_.min_component * target_.face_area(surface_area(surface_, context_));
-  if (const std::size_t dropped = drop_small_pieces(surface_, area)) {
-    result_.report.notes.push_back("left out " + std::to_string(dropped) +
-                                   " pieces with room for fewer than " +
-                                   std::to_string(std::lround(options_.min_component)) + " faces");
-  }
-}
-
-void Pipeline::lay_guides(double edge_length) {
-  if (options_.guides.empty()) return;
-  stage_("guides", [&] {
-    std::vector<Guide> guides = options_.guides;
-    for (Guide& guide : guides) {
-      for (Eigen::Vector3d& p : guide.points) p = frame_.inside(p);
-    }
-    std::vector<EdgeOfLine> lines;
-    const bool cut = !is_cloud_ && nodes_are_vertices_;
-    if (cut) {
-      const double side = target_.face_side(surface_area(surface_, context_));
-      lines = feature_edges(surface_, options_.features, side, context_);
-    }
-    TracedGuides traced = trace_guides(surface_, guides, lines, edge_length, frame_.scale);
-    result_.report.notes.insert(result_.report.notes.end(), traced.notes.begin(),
-                                traced.notes.end());
-    const auto is_hard = [&](const GuideRun& run) { return cut && run.strength == 1; };
-    std::vector<GuideRun> hard;
-    for (GuideRun& run : traced.runs)
-      (is_hard(run) ? hard : soft_guides_).push_back(std::move(run));
-    if (cut) guides_ = cut_guides(surface_, hard);
-  });
 }
 
 void Pipeline::append(const FeatureConstraints& more) {

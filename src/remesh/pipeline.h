@@ -27,6 +27,9 @@ class Pipeline {
   /// Takes the noise out of a scan of a mechanical part.
   void sharpen();
 
+  /// Not finer than the target needs it, by far the most of a large input's vertices.
+  void coarsen();
+
   /// Fine enough for the target, and in the order of a curve.
   void refine();
   void build_graph();
@@ -87,6 +90,7 @@ class Pipeline {
   bool is_coarse_for_bends() const;
   /// Returns whether the lattice is finer now.
   bool choose_lattice();
+  FeatureOptions feature_options() const;
   /// Those longer than the target allows. Returns whether there are any.
   bool split_long_edges(double area, const EdgeLengths& edges);
 
@@ -140,6 +144,8 @@ class Pipeline {
   bool has_thin_limbs_ = false;  // for its faces, see is_coarse_for_bends()
   RemeshOptions wanted_;         // what the target goes by
   bool is_sharpened_ = false;
+  bool is_coarsened_ = false;  // its creases are marked since then, and
+  bool had_marks_ = false;     // others were before
   Mesh surface_;
   SurfaceSize input_size_{};  // of the surface before it is refined
   Hierarchy hierarchy_;

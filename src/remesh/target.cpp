@@ -62,6 +62,25 @@ double Target::longest_input_edge(const RemeshOptions& options, double area,
   return std::min((for_smallest ? length / options.sizing.ratio : length) / 2, 2 * mean_edge);
 }
 
+CoarseEdges Target::coarse_edges(const RemeshOptions& options, double area) const {
+  // As few vertices as leave the fields as they were; measured. The coarse lattice of pure quads
+  // needs more of them for a cell, but the surface must not be coarser than the faces.
+  constexpr double shortest = 0.33, longest = 0.75, of_pure_quads = 0.7;
+  const double smallest = options.sizing.is_uniform() ? 1 : 1 / options.sizing.ratio;
+  const double length =
+      edge_length(area) * smallest * (kind_ == OutputFaces::quads ? of_pure_quads : 1);
+  return {static_cast<float>(shortest * length), static_cast<float>(longest * length)};
+}
+
+bool Target::is_dense(const RemeshOptions& options, std::size_t vertices,
+                      const SurfaceSize& size) const {
+  // For something to be gained.
+  constexpr double enough = 0.9;  // of the shortest edges
+  constexpr std::size_t many = 8000;
+  return options.coarsen && options.graph.nodes == GraphNodes::vertices && vertices >= many &&
+         size.edges.mean < enough * double{coarse_edges(options, size.area).shortest};
+}
+
 double Target::growth(double grading) const {
   // Sides that grow as exp(r n) over n faces in a row grow by r with the distance.
   return sides_ * std::log(grading) / 3;

@@ -1,6 +1,8 @@
 #pragma once
 
+#include "mesh/surface_size.h"
 #include "meshgrain/remesh.h"
+#include "meshgrain/surface.h"
 
 namespace meshgrain {
 
@@ -35,6 +37,13 @@ class Target {
   /// length: longer ones are split. Where faces vary in size, and nothing can be split later on,
   /// fine enough for the smallest.
   double longest_input_edge(const RemeshOptions& options, double area, double mean_edge) const;
+
+  /// Between which lengths the edges of a dense surface are to be, of this area.
+  CoarseEdges coarse_edges(const RemeshOptions& options, double area) const;
+
+  /// Whether a mesh of so many vertices and this size has so many more vertices than are needed
+  /// that coarsen() pays.
+  bool is_dense(const RemeshOptions& options, std::size_t vertices, const SurfaceSize& size) const;
 
   /// How fast edge lengths may grow with the distance, for faces to grow by the factor `grading`
   /// over three of them.

@@ -1,0 +1,251 @@
+#include "coarsen/collapsing_piece.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace meshgrain {
+namespace {
+
+/// The normal of a triangle, twice as long as its area.
+Vec3 area_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return (b - a).cross(c - a);
+}
+
+}  // namespace
+
+void CollapsingPiece::Ring::remove(Index v) {
+  const auto end = around.begin() + size;
+  std::copy(std::find(around.begin(), end, v) + 1, end, std::find(around.begin(), end, v));
+  --size;
+}
+
+CollapsingPiece::CollapsingPiece(std::vector<Vec3> positions, std::vector<std::uint8_t> is_free,
+                                 std::span<const Triangle> triangles)
+    : positions_(std::move(positions)),
+      is_free_(std::move(is_free)),
+      faces_(positions_.size(), 0),
+      rings_(positions_.size()) {
+  find_rings(triangles);
+  for (const Triangle& t : triangles) {
+    if (!is_free_[t[0]] && !is_free_[t[1]] && !is_free_[t[2]]) fixed_.push_back(t);
+  }
+}
+
+void CollapsingPiece::find_rings(std::span<const Triangle> triangles) {
+  // The edges opposite to each vertex.
+  std::vector<Index> first(positions_.size() + 1, 0);
+  for (const Triangle& t : triangles) {
+    for (const Index v : t) ++first[v + 1];
+  }
+  for (std::size_t v = 0; v < positions_.size(); ++v) {
+    faces_[v] = static_cast<std::uint16_t>(
+        std::min<Index>(first[v + 1], std::numeric_limits<std::uint16_t>::max()));
+    first[v + 1] += first[v];
+  }
+  std::vector<std::array<Index, 2>> opposite(3 * triangles.size());
+  for (std::size_t f = triangles.size(); f-- > 0;) {
+    const auto [a, b, c] = triangles[f];
+    opposite[--first[a + 1]] = {b, c};
+    opposite[--first[b + 1]] = {c, a};
+    opposite[--first[c + 1]] = {a, b};
+  }
+  for (Index v = 0; v < positions_.size(); ++v) {
+    if (!is_free_[v]) continue;
+    const std::size_t count = faces_[v];
+    const std::array<Index, 2>* const edges = opposite.data() + first[v + 1];
+    Ring& ring = rings_[v];
+    // One closed fan: who follows the edges has met each once when back at the first.
+    bool is_fan = count >= 3 && count <= most_neighbors;
+    for (Index next = is_fan ? edges[0][0] : 0; is_fan && ring.size < count;) {
+      std::size_t k = 0;
+      while (k < count && edges[k][0] != next) ++k;
+      is_fan = k < count && (ring.size == 0 || next != ring.around[0]);
+      if (!is_fan) break;
+      ring.around[ring.size++] = next;
+      next = edges[k][1];
+      is_fan = ring.size < count || next == ring.around[0];
+    }
+    is_free_[v] = is_fan;
+    if (!is_fan) ring.size = 0;
+  }
+}
+
+double CollapsingPiece::mean_edge() const {
+  double sum = 0;
+  std::size_t count = 0;
+  for (std::size_t v = 0; v < positions_.size(); ++v) {
+    count += rings_[v].size;
+    for (std::size_t k = 0; k < rings_[v].size; ++k) {
+      sum += (positions_[rings_[v].around[k]] - positions_[v]).norm();
+    }
+  }
+  return sum / std::max<double>(1, static_cast<double>(count));
+}
+
+void CollapsingPiece::collapse_short_edges(const CoarseEdges& edges) {
+  longest_ = edges.longest;
+  // Little by little, or some vertices would take all of their neighbours, and many of theirs.
+  constexpr float growth = 1.4f;
+  float shortest = growth * static_cast<float>(mean_edge());
+  for (;; shortest *= growth) {
+    shortest = std::min(shortest, edges.shortest);
+    is_new_.assign(positions_.size(), 1);
+    while (sweep(shortest) > 0) continue;
+    if (shortest >= edges.shortest) return;
+  }
+}
+
+std::size_t CollapsingPiece::sweep(float shortest) {
+  std::size_t gone = 0;
+  for (Index v = 0; v < positions_.size(); ++v) {
+    if (!is_new_[v] || rings_[v].size == 0) continue;
+    const Ring& ring = rings_[v];
+    Index nearest = no_index;
+    float least = shortest * shortest;
+    for (std::size_t k = 0; k < ring.size; ++k) {
+      const Index w = ring.around[k];
+      const float length = (positions_[w] - positions_[v]).squaredNorm();
+      if (!is_free_[w] || length >= least) continue;
+      least = length;
+      nearest = w;
+    }
+    if (nearest != no_index && collapse(v, nearest)) {
+      ++gone;
+    } else {
+      is_new_[v] = 0;
+    }
+  }
+  return gone;
+}
+
+bool CollapsingPiece::keeps_topology(Index a, Index b) const {
+  const Ring &at_a = rings_[a], &at_b = rings_[b];
+  const std::size_t left = at_a.size + at_b.size - std::size_t{4};
+  if (left < 3 || left >= most_neighbors) return false;
+  // The link condition: they have the two neighbours in common that are across their faces.
+  std::size_t common = 0;
+  for (std::size_t k = 0; k < at_b.size; ++k) {
+    const Index v = at_b.around[k];
+    if (at_a.find(v) == at_a.size) continue;
+    ++common;
+    // Each of them loses a face. Others of it may be in other pieces.
+    if (faces_[v] < 4) return false;
+  }
+  return common == 2;
+}
+
+void CollapsingPiece::add_to_star(Index v, Index other, Star& star) const {
+  const Ring& ring = rings_[v];
+  for (std::size_t k = 0; k < ring.size; ++k) {
+    const Index p = ring.around[k], q = ring.around[ring.after(k)];
+    if (p == other || q == other) continue;
+    star.from[star.size] = positions_[p];
+    star.to[star.size] = positions_[q];
+    star.normals[star.size++] = area_normal(positions_[v], positions_[p], positions_[q]);
+  }
+}
+
+/// Where the faces around the edge are touched best, in the sense of least squares, of all places
+/// that keep the volume.
+Vec3 CollapsingPiece::best_place(Index a, Index b, const Star& star) const {
+  const Vec3 middle = 0.5f * (positions_[a] + positions_[b]);
+  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
+  Vec3 right = Vec3::Zero(), sum = Vec3::Zero();
+  float volume = 0;
+  const auto add = [&](const Vec3& normal, const Vec3& point) {
+    const float height = normal.dot(point - middle);
+    squares += normal * normal.transpose();
+    right += normal * height;
+    sum += normal;
+    volume += height;
+  };
+  for (std::size_t k = 0; k < star.size; ++k) add(star.normals[k], star.from[k]);
+  // The two that go.
+  const Ring& ring = rings_[a];
+  const std::size_t at = ring.find(b), before = at == 0 ? ring.size - std::size_t{1} : at - 1;
+  for (const std::size_t k : {before, at}) {
+    const Vec3 &p = positions_[ring.around[k]], &q = positions_[ring.around[ring.after(k)]];
+    add(area_normal(positions_[a], p, q), p);
+  }
+  const float trace = squares.trace();
+  if (!(trace > 0)) return middle;
+  constexpr float pull = 0.01f;  // to the middle, along what is flat
+  squares.diagonal().array() += pull * trace;
+  Vec3 place = squares.inverse() * right;
+  constexpr float bent = 0.25f;  // so much that the sum of the normals says nothing
+  const float length = sum.squaredNorm();
+  if (length > bent * trace) place += sum * ((volume - sum.dot(place)) / length);
+  const bool is_near = place.squaredNorm() <= (positions_[b] - middle).squaredNorm();
+  return is_near ? Vec3(middle + place) : middle;
+}
+
+bool CollapsingPiece::keeps_shape(const Star& star, const Vec3& place) const {
+  constexpr float least_cosine = 0.7f, least_quality = 0.15f, farthest = 0.15f;
+  for (std::size_t k = 0; k < star.size; ++k) {
+    const Vec3 &p = star.from[k], &q = star.to[k], &before = star.normals[k];
+    const Vec3 after = area_normal(place, p, q);
+    const float cosine = before.dot(after), lengths = before.squaredNorm() * after.squaredNorm();
+    if (!(cosine > 0) || cosine * cosine < least_cosine * least_cosine * lengths) return false;
+    const float to_p = (p - place).squaredNorm(), to_q = (q - place).squaredNorm();
+    if (std::max(to_p, to_q) > longest_ * longest_) return false;
+    // An equilateral triangle has the squares of twice its area and of the sum of its sides'
+    // squares as 1 to 12.
+    const float sides = to_p + to_q + (p - q).squaredNorm();
+    if (after.squaredNorm() < least_quality * least_quality / 12 * sides * sides) return false;
+    const float height = before.dot(place - p), far = farthest * longest_;
+    if (height * height > far * far * before.squaredNorm()) return false;
+  }
+  return true;
+}
+
+bool CollapsingPiece::collapse(Index a, Index b) {
+  if (!keeps_topology(a, b)) return false;
+  Star star;
+  add_to_star(a, b, star);
+  add_to_star(b, a, star);
+  const Vec3 place = best_place(a, b, star);
+  if (!keeps_shape(star, place)) return false;
+  positions_[a] = place;
+  Ring &at_a = rings_[a], &at_b = rings_[b];
+  const std::size_t b_at_a = at_a.find(b), a_at_b = at_b.find(a);
+  const Index left = at_a.around[at_a.after(b_at_a)], right = at_b.around[at_b.after(a_at_b)];
+  // From the left one around a to the right one, and on around b.
+  Ring merged;
+  for (std::size_t k = at_a.after(b_at_a); k != b_at_a; k = at_a.after(k)) {
+    merged.around[merged.size++] = at_a.around[k];
+  }
+  for (std::size_t k = at_b.after(at_b.after(a_at_b)); at_b.around[k] != left; k = at_b.after(k)) {
+    const Index v = at_b.around[k];
+    merged.around[merged.size++] = v;
+    if (is_free_[v]) rings_[v].around[rings_[v].find(b)] = a;
+  }
+  for (const Index v : {left, right}) {
+    --faces_[v];
+    if (is_free_[v]) rings_[v].remove(b);
+  }
+  faces_[a] = static_cast<std::uint16_t>(merged.size);
+  at_a = merged;
+  at_b.size = 0;
+  is_new_[a] = 1;
+  for (std::size_t k = 0; k < merged.size; ++k) is_new_[merged.around[k]] = 1;
+  return true;
+}
+
+std::vector<CollapsingPiece::Triangle> CollapsingPiece::triangles() const {
+  std::vector<Triangle> result = fixed_;
+  for (Index v = 0; v < positions_.size(); ++v) {
+    const Ring& ring = rings_[v];
+    for (std::size_t k = 0; k < ring.size; ++k) {
+      const Index p = ring.around[k], q = ring.around[ring.after(k)];
+      // Once, at the first of its free vertices.
+      if ((is_free_[p] && p < v) || (is_free_[q] && q < v)) continue;
+      result.push_back({v, p, q});
+    }
+  }
+  return result;
+}
+
+}  // namespace meshgrain

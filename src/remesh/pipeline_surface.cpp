@@ -1,0 +1,154 @@
+// The stages of the pipeline that make a surface ready for its graph.
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "mesh/border.h"
+#include "mesh/long_edges.h"
+#include "mesh/orient_faces.h"
+#include "mesh/refine_slivers.h"
+#include "meshgrain/clean.h"
+#include "meshgrain/error.h"
+#include "meshgrain/surface.h"
+#include "meshgrain/triangulate.h"
+#include "remesh/memory.h"
+#include "remesh/notes.h"
+#include "remesh/pipeline.h"
+#include "remesh/take_out_noise.h"
+
+namespace meshgrain {
+namespace {
+
+std::vector<std::uint8_t> picked(const std::vector<std::uint8_t>& flags,
+                                 const std::vector<Index>& which) {
+  std::vector<std::uint8_t> result;
+  for (const Index i : which) result.push_back(flags[i]);
+  return result;
+}
+
+}  // namespace
+
+void Pipeline::clean_up(Mesh input) {
+  stage_("clean", [&] {
+    result_.report.notes = describe(clean(input, context_));
+    frame_ = unit_frame(input);
+    aim_at(options_.faces);
+    enter(frame_, input);
+    const bool is_ready = is_cloud_ || input.faces.uniform_degree() == 3;
+    surface_ = is_ready ? std::move(input) : triangulate(input);
+    for (std::string& note : describe(orient_faces(surface_, context_))) {
+      result_.report.notes.push_back(std::move(note));
+    }
+    drop_pieces();
+  });
+}
+
+void Pipeline::drop_pieces() {
+  if (is_cloud_ || options_.min_component == 0) return;
+  const double area = options_.min_component * target_.face_area(surface_area(surface_, context_));
+  if (const std::size_t dropped = drop_small_pieces(surface_, area)) {
+    result_.report.notes.push_back("left out " + std::to_string(dropped) +
+                                   " pieces with room for fewer than " +
+                                   std::to_string(std::lround(options_.min_component)) + " faces");
+  }
+}
+
+void Pipeline::sharpen() {
+  if (is_cloud_) return;
+  stage_("noise", [&] {
+    input_size_ = surface_size(surface_, context_);
+    const double side = target_.face_side(input_size_.area);
+    is_sharpened_ = take_out_noise(surface_, options_, side, result_.report.notes, context_);
+    if (is_sharpened_) input_size_ = surface_size(surface_, context_);
+  });
+  if (options_.lock_borders) locked_ = border_vertices(surface_, context_);
+}
+
+void Pipeline::coarsen() {
+  if (is_cloud_ || !target_.is_dense(options_, surface_.positions.size(), input_size_)) return;
+  stage_("order", [&] { put_in_order(); });
+  // What is a crease is to be seen where the surface is as it was.
+  stage_("features", [&] {
+    had_marks_ = !surface_.marked_edges.empty();
+    const auto creases = rim_and_creases(surface_, feature_options(), context_).creases;
+    surface_.marked_edges.insert(surface_.marked_edges.end(), creases.begin(), creases.end());
+    is_coarsened_ = true;
+  });
+  stage_("coarsen", [&] {
+    std::vector<std::uint8_t> stays(surface_.positions.size(), 0);
+    for (const auto& [a, b] : surface_.marked_edges) stays[a] = stays[b] = 1;
+    const CoarseEdges edges = target_.coarse_edges(options_, input_size_.area);
+    const auto kept = meshgrain::coarsen(surface_, edges, std::move(stays), context_);
+    if (!locked_.empty()) locked_ = picked(locked_, kept);
+    input_size_ = surface_size(surface_, context_);
+    check_memory_of_coarse(surface_, input_size_.area, options_, target_, context_);
+  });
+}
+
+FeatureOptions Pipeline::feature_options() const {
+  FeatureOptions options = options_.features;
+  if (is_sharpened_ || (is_coarsened_ && options.creases != Creases::none)) {
+    options.creases = Creases::marked;
+  }
+  options.marks_may_go = options.marks_may_go || (is_coarsened_ && !had_marks_);
+  return options;
+}
+
+void Pipeline::refine() {
+  if (!is_cloud_) {
+    const double area = input_size_.area;
+    if (!(area > 0)) throw Error("the input has no surface: all of its faces are degenerate");
+    stage_("subdivide", [&] { split_long_edges(area, input_size_.edges); });
+    lay_guides(target_.edge_length(area));
+  }
+  stage_("order", [&] { put_in_order(); });
+}
+
+bool Pipeline::split_long_edges(double area, const EdgeLengths& edges) {
+  const double limit = is_coarsened_ ? target_.coarse_edges(options_, area).longest
+                                     : target_.longest_input_edge(options_, area, edges.mean);
+  if (!(edges.max > limit)) return false;
+  std::vector<Index> faces = faces_with_long_edges(surface_, limit, context_);
+  if (refine_slivers(surface_, limit, faces, context_)) {
+    faces = faces_with_long_edges(surface_, limit, context_);
+  }
+  subdivide_faces(surface_, limit, std::move(faces), context_);
+  return true;
+}
+
+std::vector<Index> Pipeline::put_in_order() {
+  const std::size_t count = surface_.positions.size();
+  const std::vector<Index> order = sort_along_curve(surface_, context_);
+  if (!guides_.edges.empty()) renumber(guides_, order);
+  if (locked_.empty()) return order;
+  locked_.resize(count, 0);  // what was split off is no vertex of the input
+  locked_ = picked(locked_, order);
+  return order;
+}
+
+void Pipeline::lay_guides(double edge_length) {
+  if (options_.guides.empty()) return;
+  stage_("guides", [&] {
+    std::vector<Guide> guides = options_.guides;
+    for (Guide& guide : guides) {
+      for (Eigen::Vector3d& p : guide.points) p = frame_.inside(p);
+    }
+    std::vector<EdgeOfLine> lines;
+    const bool cut = !is_cloud_ && nodes_are_vertices_;
+    if (cut) {
+      const double side = target_.face_side(surface_area(surface_, context_));
+      lines = feature_edges(surface_, feature_options(), side, context_);
+    }
+    TracedGuides traced = trace_guides(surface_, guides, lines, edge_length, frame_.scale);
+    result_.report.notes.insert(result_.report.notes.end(), traced.notes.begin(),
+                                traced.notes.end());
+    const auto is_hard = [&](const GuideRun& run) { return cut && run.strength == 1; };
+    std::vector<GuideRun> hard;
+    for (GuideRun& run : traced.runs)
+      (is_hard(run) ? hard : soft_guides_).push_back(std::move(run));
+    if (cut) guides_ = cut_guides(surface_, hard);
+  });
+}
+
+}  // namespace meshgrain
