@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 
 #include "meshgrain/error.h"
@@ -96,6 +98,51 @@ TEST(Symmetry, ResultsAreExactlySymmetric) {
     EXPECT_NEAR(static_cast<double>(s.faces), 1000, 20);
     EXPECT_EQ(result.report.input_vertices, mesh.positions.size());
     EXPECT_LT(surface_distance(result.mesh, mesh, bounding_diagonal(mesh)).mean, 2e-3);
+  }
+}
+
+/// A ring, as thick as `radius`, around z.
+Mesh ring(float radius) {
+  constexpr Index around = 120, across = 16;
+  Mesh mesh;
+  const auto angle = [](Index k, Index count) {
+    return 2 * std::numbers::pi_v<float> * static_cast<float>(k) / static_cast<float>(count);
+  };
+  for (Index i = 0; i < around; ++i) {
+    for (Index k = 0; k < across; ++k) {
+      const float a = angle(i, around), b = angle(k, across);
+      const float r = 1 + radius * std::cos(b);
+      mesh.positions.emplace_back(r * std::cos(a), r * std::sin(a), radius * std::sin(b));
+      const auto vertex = [&](Index di, Index dk) {
+        return (i + di) % around * across + (k + dk) % across;
+      };
+      mesh.faces.push_back({vertex(0, 0), vertex(1, 0), vertex(1, 1), vertex(0, 1)});
+    }
+  }
+  return mesh;
+}
+
+/// The halves of a ring are one face wide, or its ends in the plane are tiny.
+TEST(Symmetry, ThinLimbsInThePlaneAndAcrossItAreKept) {
+  for (const float radius : {0.06f, 0.2f}) {
+    const Mesh input = ring(radius);
+    for (const std::size_t count : {60, 140}) {
+      for (const OutputFaces faces :
+           {OutputFaces::quads, OutputFaces::quad_dominant, OutputFaces::triangles}) {
+        for (const int axis : {0, 2}) {
+          SCOPED_TRACE(std::to_string(radius) + " " + std::to_string(count) + " " +
+                       std::to_string(static_cast<int>(faces)) + " " + std::to_string(axis));
+          RemeshOptions options;
+          options.faces = faces;
+          options.face_count = count;
+          options.symmetry.axes[axis] = true;
+          const Mesh result = remesh(input, options).mesh;
+          made::expect_same_topology(mesh_statistics(result), mesh_statistics(input));
+          if (faces == OutputFaces::quads) EXPECT_EQ(result.faces.uniform_degree(), 4u);
+          if (faces == OutputFaces::triangles) EXPECT_EQ(result.faces.uniform_degree(), 3u);
+        }
+      }
+    }
   }
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "coarsen/collapsing_piece.h"
+#include "mesh/keep_vertices.h"
 #include "meshgrain/surface.h"
 
 namespace meshgrain {
@@ -111,16 +112,10 @@ class Round {
       number[v] = static_cast<Index>(kept.size());
       if (!is_gone_[v]) kept.push_back(v);
     }
-    const auto pick = [&](auto& values) {
-      if (values.empty()) return;
-      for (std::size_t k = 0; k < kept.size(); ++k) values[k] = values[kept[k]];
-      values.resize(kept.size());
-      values.shrink_to_fit();
-    };
-    pick(mesh_.positions);
-    pick(mesh_.normals);
-    pick(mesh_.values);
-    pick(stays_);
+    keep_vertices(mesh_, kept);
+    mesh_.positions.shrink_to_fit();
+    for (std::size_t k = 0; k < kept.size(); ++k) stays_[k] = stays_[kept[k]];
+    stays_.resize(kept.size());
     for (auto& edge : mesh_.marked_edges) edge = {number[edge[0]], number[edge[1]]};
     std::vector<std::size_t> first(left.size() + 1, 0);
     for (std::size_t r = 0; r < left.size(); ++r) first[r + 1] = first[r] + left[r].size();

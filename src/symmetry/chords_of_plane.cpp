@@ -38,15 +38,17 @@ bool all_have(const Mesh& mesh, std::size_t degree) {
   return true;
 }
 
-void add_vertex(Mesh& mesh, const Vec3& position, Index normal_of,
+/// Adds the vertex for a chord.
+void add_vertex(Mesh& mesh, Vec3 position, Index a, Index b, int axis,
                 std::vector<std::uint8_t>& on_plane) {
+  if (position[axis] == 0) position[axis] = (mesh.positions[a] - mesh.positions[b]).norm() / 2;
   mesh.positions.push_back(position);
-  if (!mesh.normals.empty()) mesh.normals.push_back(Vec3(mesh.normals[normal_of]));
+  if (!mesh.normals.empty()) mesh.normals.push_back(Vec3(mesh.normals[a]));
   on_plane.push_back(0);
 }
 
 /// Of a mesh of quads: the two at a chord become three around a new vertex.
-void open_chords(Mesh& mesh, std::vector<std::uint8_t>& on_plane) {
+void open_chords(Mesh& mesh, std::vector<std::uint8_t>& on_plane, int axis) {
   for (auto chords = find_chords(mesh, on_plane); !chords.empty();
        chords = find_chords(mesh, on_plane)) {
     const std::vector<PlaneSide>& sides = chords.begin()->second;
@@ -60,7 +62,8 @@ void open_chords(Mesh& mesh, std::vector<std::uint8_t>& on_plane) {
     Vec3 middle = Vec3::Zero();
     for (const Index v : around) middle += mesh.positions[v] / 6;
     const auto center = static_cast<Index>(mesh.positions.size());
-    add_vertex(mesh, middle, around[0], on_plane);
+    const auto [a, b] = chords.begin()->first;
+    add_vertex(mesh, middle, a, b, axis, on_plane);
     const auto quad = [&](std::size_t first) {
       return std::array<Index, 4>{center, around[first % 6], around[(first + 1) % 6],
                                   around[(first + 2) % 6]};
@@ -83,13 +86,13 @@ void open_chords(Mesh& mesh, std::vector<std::uint8_t>& on_plane) {
 }
 
 /// Of any mesh: they are halved. Triangles stay triangles.
-void split_chords(Mesh& mesh, std::vector<std::uint8_t>& on_plane) {
+void split_chords(Mesh& mesh, std::vector<std::uint8_t>& on_plane, int axis) {
   const bool triangles = all_have(mesh, 3);
   std::map<std::pair<Index, Index>, Index> middles;
   for (const auto& [edge, sides] : find_chords(mesh, on_plane)) {
+    const auto [a, b] = edge;
     middles[edge] = static_cast<Index>(mesh.positions.size());
-    add_vertex(mesh, 0.5f * (mesh.positions[edge.first] + mesh.positions[edge.second]), edge.first,
-               on_plane);
+    add_vertex(mesh, 0.5f * (mesh.positions[a] + mesh.positions[b]), a, b, axis, on_plane);
   }
   if (middles.empty()) return;
   Faces faces;
@@ -120,11 +123,11 @@ void split_chords(Mesh& mesh, std::vector<std::uint8_t>& on_plane) {
 
 }  // namespace
 
-void take_away_chords(Mesh& half, std::vector<std::uint8_t>& on_plane) {
+void take_away_chords(Mesh& half, std::vector<std::uint8_t>& on_plane, int axis) {
   if (all_have(half, 4)) {
-    open_chords(half, on_plane);
+    open_chords(half, on_plane, axis);
   } else {
-    split_chords(half, on_plane);
+    split_chords(half, on_plane, axis);
   }
 }
 

@@ -1,5 +1,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -7,12 +8,14 @@
 #include <vector>
 
 #include "mesh/border.h"
+#include "mesh/keep_vertices.h"
 #include "meshgrain/clean.h"
 #include "meshgrain/statistics.h"
 #include "meshgrain/surface.h"
 #include "meshgrain/symmetry.h"
 #include "meshgrain/triangulate.h"
 #include "symmetry/chords_of_plane.h"
+#include "util/edge_of.h"
 #include "util/union_find.h"
 
 namespace meshgrain {
@@ -38,16 +41,38 @@ double center_of_area(const Mesh& mesh, int axis) {
   return total > 0 ? sum / total : 0;
 }
 
-/// Faces with all corners on the plane lie between the halves, and in neither.
-Faces keep_faces(const Mesh& mesh, const std::vector<std::uint8_t>& on_plane) {
-  Faces kept;
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    const auto face = mesh.faces[f];
-    if (!std::all_of(face.begin(), face.end(), [&](Index v) { return on_plane[v] != 0; })) {
-      kept.push_back(face);
-    }
+/// Drops faces with all corners on the plane, which lie between the halves and in neither, as long
+/// as the rest hangs together as before: those with all sides but one on the border.
+void drop_ears(Mesh& mesh, const std::vector<std::uint8_t>& on_plane) {
+  const Faces& faces = mesh.faces;
+  std::vector<std::size_t> flat;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    if (std::ranges::all_of(faces[f], [&](Index v) { return on_plane[v] != 0; })) flat.push_back(f);
   }
-  return kept;
+  if (flat.empty()) return;
+  std::map<std::array<Index, 2>, int> uses;
+  const auto for_sides = [&](std::size_t f, const auto& body) {
+    const auto face = faces[f];
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      body(uses[edge_of(face[k], face[(k + 1) % face.size()])]);
+    }
+  };
+  for (std::size_t f = 0; f < faces.size(); ++f) for_sides(f, [](int& count) { ++count; });
+  std::vector<std::uint8_t> is_dropped(faces.size(), 0);
+  const auto drop = [&](std::size_t f) {
+    std::size_t inner = 0;
+    for_sides(f, [&](int count) { inner += count > 1; });
+    if (inner > 1) return false;
+    for_sides(f, [](int& count) { --count; });
+    is_dropped[f] = 1;
+    return true;
+  };
+  while (std::erase_if(flat, drop) > 0) continue;
+  Faces kept;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    if (!is_dropped[f]) kept.push_back(faces[f]);
+  }
+  mesh.faces = std::move(kept);
 }
 
 /// What each vertex is connected with.
@@ -161,8 +186,8 @@ void add_mirror_image(Mesh& mesh, int axis, double near) {
       on_plane[v] = 1;
     }
   }
-  mesh.faces = keep_faces(mesh, on_plane);
-  take_away_chords(mesh, on_plane);
+  drop_ears(mesh, on_plane);
+  take_away_chords(mesh, on_plane, axis);
   const auto count = static_cast<Index>(mesh.positions.size());
   std::vector<Index> image(count);
   for (Index v = 0; v < count; ++v) {
@@ -194,6 +219,7 @@ void add_mirror_image(Mesh& mesh, int axis, double near) {
     const auto [a, b] = mesh.marked_edges[e];
     if (image[a] != a || image[b] != b) mesh.marked_edges.push_back({image[a], image[b]});
   }
+  drop_unused_vertices(mesh, Context(1));
 }
 
 }  // namespace meshgrain

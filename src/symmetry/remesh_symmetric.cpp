@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
+#include "mesh/border.h"
 #include "meshgrain/clean.h"
 #include "meshgrain/error.h"
 #include "meshgrain/surface.h"
@@ -77,11 +79,19 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const Context& 
     const double middle = input.origin[plane.axis];
     coordinate = middle + std::abs(coordinate - middle);
   }
+  const bool is_closed =
+      planes.size() == 1 && std::ranges::all_of(border_edges(input), [&](const auto& edge) {
+        return input.positions[edge[0]][planes[0].axis] == 0 &&
+               input.positions[edge[1]][planes[0].axis] == 0;
+      });
   // Where a half is a single quad wide, its two sides would be in the plane.
   if (!planes.empty()) options.fine_lattice = false;
   RemeshResult result = remesh(std::move(input), options, context);
   for (const MirrorPlane& plane : planes) {
-    add_mirror_image(result.mesh, plane.axis, 0.2 * edge_lengths(result.mesh, context).mean);
+    // All of the border of what was closed must come to lie on the plane.
+    const double near = is_closed ? std::numeric_limits<double>::infinity()
+                                  : 0.2 * edge_lengths(result.mesh, context).mean;
+    add_mirror_image(result.mesh, plane.axis, near);
     notes.emplace_back("made symmetric across ").push_back("xyz"[plane.axis]);
   }
   result.report.input_vertices = vertices;
