@@ -303,6 +303,60 @@ TEST_F(Io, ObjNormalsOfPointsAreKept) {
   EXPECT_TRUE(read("b.obj", "v 0 0 0\nv 1 0 0\nvn 0 0 2\n").normals.empty());
 }
 
+/// Runs of lines that are like each other are read by several threads; what is special among them
+/// is not, and means what it does in a small file.
+TEST_F(Io, LargeObjIsReadAsASmallOne) {
+  constexpr int count = 60000;
+  std::string text = "# a comment\n";
+  std::vector<Vec3> positions;
+  Polygons faces;
+  const auto vertex = [&](int k) {
+    positions.emplace_back(static_cast<float>(k), 0.5f, -0.25f);
+    return fmt::format("v {} 0.5 -0.25{}\n", k, k % 1000 == 7 ? " # here" : "");
+  };
+  for (int k = 0; k < count; ++k) {
+    text += k % 9000 == 4000 ? "v \\\n" + vertex(k).substr(2) : vertex(k);
+    if (k % 7000 == 3000) text += "vt 0 0\n\n";
+  }
+  for (int k = 0; k + 4 < count; ++k) {
+    const auto v = static_cast<Index>(k);
+    if (k % 5000 == 100) {
+      text += fmt::format("f {}//1 {} {} {}\n", k + 1, k + 2, k + 3, k + 4);
+      faces.push_back({v, v + 1, v + 2, v + 3});
+    } else if (k % 5000 == 200) {
+      text += fmt::format("f {} {} \\\n {}\n", k + 1, k - count, k + 3);
+      faces.push_back({v, v, v + 2});
+    } else if (k % 5000 == 300) {
+      text += fmt::format("f {} {} {}\n", k + 1, count + 1, k + 3);  // comes last
+      faces.push_back({v, count, v + 2});
+    } else {
+      text += fmt::format("f {} {}/3 {}\n", k + 1, k + 2, k + 3);
+      faces.push_back({v, v + 1, v + 2});
+    }
+  }
+  const std::string complete = text + vertex(count);
+  const Mesh mesh = read("large.obj", complete);
+  EXPECT_EQ(mesh.positions, positions);
+  EXPECT_EQ(polygons(mesh), faces);
+  const auto lines_to = [&](std::size_t at) {
+    return std::count(complete.begin(), complete.begin() + static_cast<std::ptrdiff_t>(at), '\n') +
+           1;
+  };
+  const auto expect_error = [&](const std::string& good, const std::string& bad,
+                                const std::string& message) {
+    std::string broken = complete;
+    const std::size_t at = broken.find(good);
+    ASSERT_NE(at, broken.npos);
+    broken.replace(at, good.size(), bad);
+    EXPECT_EQ(error_of("bad.obj", broken),
+              fmt::format("bad.obj: line {}: {}", lines_to(at + 1), message));
+  };
+  expect_error("\nv 33333 ", "\nv x ", "expected coordinate x, found \"x\"");
+  expect_error("\nf 44444 ", "\nf 4x ", "expected a vertex index, found \"4x\"");
+  expect_error("\nf 55555 ", "\nf 99999 ",
+               "vertex index 99999 is out of range: the file holds 60001 vertices");
+}
+
 TEST_F(Io, ObjErrorsNameTheLine) {
   EXPECT_EQ(error_of("a.obj", "v 0 0 0\nv 1 0\n"),
             "a.obj: line 2: expected coordinate z, found the end of the line");
@@ -1050,7 +1104,8 @@ TEST_F(Io, DamagedFilesAreReadOrRefused) {
 
 TEST(IoModels, RealModelsAreSound) {
   const char* const folder = std::getenv("MESHGRAIN_MODELS");
-  if (!folder) GTEST_SKIP() << "set MESHGRAIN_MODELS to a folder of models to read them all";
+  if (!folder || *folder == '\0')
+    GTEST_SKIP() << "set MESHGRAIN_MODELS to a folder of models to read them all";
   int count = 0;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string extension = entry.path().extension().string();

@@ -44,6 +44,8 @@ class Faces {
   void push_back(std::initializer_list<Index> face) {
     push_back(std::span<const Index>(face.begin(), face.size()));
   }
+  /// Many faces of `degree` corners each.
+  void append(std::span<const Index> corners, std::size_t degree);
   void reserve(std::size_t faces, std::size_t corners);
   void clear() { *this = Faces(); }
 

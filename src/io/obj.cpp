@@ -4,12 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <map>
+#include <span>
 #include <utility>
 
 #include "io/coordinates.h"
 #include "io/formats.h"
+#include "io/obj_runs.h"
 #include "io/paint.h"
 #include "io/text.h"
 #include "mesh/border.h"
@@ -35,6 +36,7 @@ class Reader {
   void run() {
     for (std::size_t line = 0; !text_.at_end(); ++line, text_.next_line()) {
       if (line % 65536 == 0) input_.progress(text_.at());
+      if (text_.at() >= next_run_) read_runs();
       if (!text_.line_ends()) read_line();
     }
     if (forward_.number > coordinates_.size()) {
@@ -83,6 +85,48 @@ class Reader {
   }
 
  private:
+  /// Of lines that are like each other, as long as there are any. What is between them, and short
+  /// ones, are read line by line.
+  void read_runs() {
+    constexpr std::ptrdiff_t few = 1 << 14;  // bytes
+    const char* before = nullptr;
+    do {
+      if (text_.line_ends()) break;
+      before = text_.at();
+      if (text_.word_is("v") && !input_.options().paint) {
+        for (const ObjNumbers& part : read_run_of_numbers(text_, "v", input_)) {
+          for (const auto& [x, y, z] : part) coordinates_.push(x, y, z);
+        }
+      } else if (text_.word_is("vn")) {
+        for (const ObjNumbers& part : read_run_of_numbers(text_, "vn", input_)) {
+          for (const auto& [x, y, z] : part) {
+            shading_.normals.push_back(Eigen::Vector3d(x, y, z).cast<float>());
+          }
+        }
+      } else if (text_.word_is("f")) {
+        const auto parts = read_run_of_faces(text_, coordinates_.size(), input_);
+        for (const ObjFaces& part : parts) add_faces(part);
+      }
+      input_.progress(text_.at());
+    } while (text_.at() - before > few);
+    next_run_ = text_.at() + std::min(few, input_.end() - text_.at());
+  }
+
+  void add_faces(const ObjFaces& faces) {
+    if (!faces.normals.empty()) {
+      shading_.corners.resize(mesh_.faces.corners().size(), no_index);
+      shading_.corners.insert(shading_.corners.end(), faces.normals.begin(), faces.normals.end());
+    }
+    std::span<const Index> corners = faces.corners;
+    for (std::size_t f = 0; f < faces.degrees.size();) {
+      const Index degree = faces.degrees[f];
+      std::size_t alike = 0;
+      while (f < faces.degrees.size() && faces.degrees[f] == degree) ++f, ++alike;
+      mesh_.faces.append(corners.first(alike * degree), degree);
+      corners = corners.subspan(alike * degree);
+    }
+  }
+
   void read_line() {
     if (text_.word_is("v")) {
       text_.advance(1);
@@ -146,31 +190,24 @@ class Reader {
     const std::size_t vertices = coordinates_.size();
     const char* const at = text_.at();
     const std::string_view word = text_.word();
-    const char* const end = word.data() + word.size();
-    std::int64_t number = 0;
-    const auto [rest, error] = std::from_chars(word.data(), end, number);
-    const bool is_index =
-        error == std::errc() && (rest == end || *rest == '/') &&
-        std::string_view(rest, end).find_first_not_of("/-0123456789") == word.npos;
-    if (!is_index && error != std::errc::result_out_of_range) {
+    const ObjCorner corner = parse_corner(word);
+    if (corner.kind == ObjCorner::Kind::no_index) {
       text_.fail(at, fmt::format("expected a vertex index, found {}", in_quotes(word)));
     }
+    std::int64_t number = corner.vertex;
     if (number < 0) number += static_cast<std::int64_t>(vertices) + 1;
-    if (error != std::errc() || number < 1 || number >= no_index) {
-      text_.fail(at, out_of_range({word.data(), rest}, vertices));
+    if (corner.kind == ObjCorner::Kind::out_of_range || number < 1 || number >= no_index) {
+      text_.fail(at, out_of_range(corner.name, vertices));
     }
     const auto found = static_cast<std::uint64_t>(number);
     if (found > vertices && found > forward_.number) forward_ = {found, at};
     corners_.push_back(static_cast<Index>(found - 1));
-    corner_normals_.push_back(normal_of({rest, end}));
+    corner_normals_.push_back(normal_of(corner));
   }
 
-  /// The normal that what follows a vertex names, if any. It may be none: that is no error.
-  Index normal_of(std::string_view rest) const {
-    const std::size_t slash = rest.rfind('/');
-    if (slash == rest.npos || slash == 0) return no_index;
-    std::int64_t number = 0;
-    std::from_chars(rest.data() + slash + 1, rest.data() + rest.size(), number);
+  /// It may be none: that is no error.
+  Index normal_of(const ObjCorner& corner) const {
+    std::int64_t number = corner.normal;
     if (number < 0) number += static_cast<std::int64_t>(shading_.normals.size()) + 1;
     return number >= 1 && number < no_index ? static_cast<Index>(number - 1) : no_index;
   }
@@ -188,6 +225,7 @@ class Reader {
 
   const Input& input_;
   Text text_;
+  const char* next_run_ = text_.at();  // where one may begin
   Mesh mesh_;
   Coordinates coordinates_;
   ForwardReference forward_;

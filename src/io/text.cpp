@@ -3,6 +3,7 @@
 #include <fast_float/fast_float.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -28,6 +29,18 @@ Text::Text(const Input& input)
 void Text::next_line() {
   const void* const found = std::memchr(at_, newline_, static_cast<std::size_t>(end_ - at_));
   at_ = found ? static_cast<const char*>(found) + 1 : end_;
+}
+
+const char* Text::line_after(const char* from, std::size_t bytes) const {
+  Text cursor = part(from, end_);
+  cursor.at_ += std::min(bytes, static_cast<std::size_t>(end_ - from));
+  while (cursor.at_ != end_) {
+    cursor.next_line();
+    const char* last = cursor.at_ - 1;  // the end of the line before
+    if (*last == newline_ && last != from && last[-1] == '\r') --last;
+    if (last == from || last[-1] != '\\') break;
+  }
+  return cursor.at_;
 }
 
 bool Text::word_is(std::string_view name) const {

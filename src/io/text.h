@@ -16,6 +16,17 @@ class Text {
   /// From the beginning of the file, without a byte order mark.
   explicit Text(const Input& input);
 
+  /// A cursor over some of the lines of the same file.
+  Text part(const char* begin, const char* end) const {
+    Text result(*this);
+    result.at_ = begin;
+    result.end_ = end;
+    return result;
+  }
+  /// The beginning of the first line, not one that is continued, that lies so many bytes or more
+  /// after `from`; or the end.
+  const char* line_after(const char* from, std::size_t bytes) const;
+
   const char* at() const { return at_; }
   bool at_end() const { return at_ == end_; }
   char peek() const { return *at_; }

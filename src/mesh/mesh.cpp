@@ -13,6 +13,17 @@ void Faces::push_back(std::span<const Index> face) {
   if (!starts_.empty()) starts_.push_back(corners_.size());
 }
 
+void Faces::append(std::span<const Index> corners, std::size_t degree) {
+  const std::size_t count = corners.size() / degree;
+  if (count_ > 0 && uniform_degree() != degree) {
+    for (std::size_t f = 0; f < count; ++f) push_back(corners.subspan(f * degree, degree));
+    return;
+  }
+  degree_ = degree;
+  corners_.insert(corners_.end(), corners.begin(), corners.end());
+  count_ += count;
+}
+
 void Faces::reserve(std::size_t faces, std::size_t corners) {
   corners_.reserve(corners);
   if (!starts_.empty()) starts_.reserve(faces + 1);
