@@ -21,26 +21,6 @@
 namespace meshgrain {
 namespace {
 
-/// The mean distance of a mesh to its mirror image, over its diagonal.
-double mismatch(const Mesh& mesh, int axis, double offset, const Context& context) {
-  Mesh image = mesh;
-  for (Vec3& p : image.positions) p[axis] = static_cast<float>(2 * offset - p[axis]);
-  constexpr std::size_t samples = 10000;
-  return surface_distance(image, mesh, bounding_diagonal(mesh), samples, context).mean;
-}
-
-double center_of_area(const Mesh& mesh, int axis) {
-  double sum = 0, total = 0;
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    const double area = face_area(mesh, f);
-    double middle = 0;
-    for (const Index v : mesh.faces[f]) middle += mesh.positions[v][axis];
-    sum += area * middle / static_cast<double>(mesh.faces.degree(f));
-    total += area;
-  }
-  return total > 0 ? sum / total : 0;
-}
-
 /// Drops faces with all corners on the plane, which lie between the halves and in neither, as long
 /// as the rest hangs together as before: those with all sides but one on the border.
 void drop_ears(Mesh& mesh, const std::vector<std::uint8_t>& on_plane) {
@@ -110,19 +90,6 @@ void drop_crumbs(Mesh& mesh, UnionFind& whole, std::size_t vertices) {
 }
 
 }  // namespace
-
-MirrorPlane find_mirror_plane(const Mesh& mesh, int axis, const Context& context) {
-  float low = mesh.positions[0][axis], high = low;
-  for (const Vec3& p : mesh.positions) {
-    low = std::min(low, p[axis]);
-    high = std::max(high, p[axis]);
-  }
-  MirrorPlane best{axis, (static_cast<double>(low) + high) / 2, 0};
-  best.mismatch = mismatch(mesh, axis, best.offset, context);
-  const double center = center_of_area(mesh, axis);
-  const double other = mismatch(mesh, axis, center, context);
-  return other < best.mismatch ? MirrorPlane{axis, center, other} : best;
-}
 
 void cut_at(Mesh& mesh, const MirrorPlane& plane) {
   const int axis = plane.axis;

@@ -14,6 +14,7 @@
 #include "remesh/take_out_noise.h"
 #include "remesh/target.h"
 #include "symmetry/fold_guides.h"
+#include "symmetry/plane_search.h"
 
 namespace meshgrain {
 namespace {
@@ -22,10 +23,11 @@ namespace {
 std::vector<MirrorPlane> find_symmetry(const Mesh& input, const Symmetry& symmetry,
                                        std::vector<std::string>& notes, const Context& context) {
   constexpr double tolerance = 0.01;  // of the diagonal, for the mean distance to the mirror image
+  const PlaneSearch search(input);
   std::vector<MirrorPlane> planes;
   for (int axis = 0; axis < 3; ++axis) {
     if (!symmetry.automatic && !symmetry.axes[axis]) continue;
-    const MirrorPlane plane = find_mirror_plane(input, axis, context);
+    const MirrorPlane plane = search.find(axis, context);
     if (plane.mismatch <= tolerance) {
       planes.push_back(plane);
     } else if (symmetry.axes[axis]) {

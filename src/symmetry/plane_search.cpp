@@ -1,0 +1,71 @@
+#include "symmetry/plane_search.h"
+
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "meshgrain/surface.h"
+
+namespace meshgrain {
+namespace {
+
+constexpr std::size_t sample_count = 10000;
+
+double center_of_area(const Mesh& mesh, int axis) {
+  double sum = 0, total = 0;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const double area = face_area(mesh, f);
+    double middle = 0;
+    for (const Index v : mesh.faces[f]) middle += mesh.positions[v][axis];
+    sum += area * middle / static_cast<double>(mesh.faces.degree(f));
+    total += area;
+  }
+  return total > 0 ? sum / total : 0;
+}
+
+}  // namespace
+
+PlaneSearch::PlaneSearch(const Mesh& mesh)
+    : mesh_(mesh), samples_(mesh, sample_count), tree_(mesh) {
+  for (const Vec3& p : mesh.positions) box_.extend(p.cast<double>());
+}
+
+/// The mean distance of the mirror image to the mesh, over its diagonal.
+double PlaneSearch::mismatch(int axis, double offset, const Context& context) const {
+  // Where it is large a few samples tell.
+  constexpr std::size_t few = 8;
+  constexpr double large = 0.02;
+  const double rough = mismatch(axis, offset, few, context);
+  return rough > large ? rough : mismatch(axis, offset, 1, context);
+}
+
+/// By every so manieth sample.
+double PlaneSearch::mismatch(int axis, double offset, std::size_t step,
+                             const Context& context) const {
+  constexpr std::size_t grain = 256;
+  const std::size_t count = (samples_.size() + step - 1) / step;
+  std::vector<double> distances(count);
+  context.for_ranges(count, grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      Eigen::Vector3d p = samples_[k * step];
+      p[axis] = 2 * offset - p[axis];
+      distances[k] = std::sqrt(tree_.closest(p).squared_distance);
+    }
+  });
+  const double sum = std::accumulate(distances.begin(), distances.end(), 0.0);
+  return sum / static_cast<double>(count) / box_.diagonal().norm();
+}
+
+MirrorPlane PlaneSearch::find(int axis, const Context& context) const {
+  MirrorPlane best{axis, box_.center()[axis], 0};
+  best.mismatch = mismatch(axis, best.offset, context);
+  const double center = center_of_area(mesh_, axis);
+  const double other = mismatch(axis, center, context);
+  return other < best.mismatch ? MirrorPlane{axis, center, other} : best;
+}
+
+MirrorPlane find_mirror_plane(const Mesh& mesh, int axis, const Context& context) {
+  return PlaneSearch(mesh).find(axis, context);
+}
+
+}  // namespace meshgrain

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "measure/bvh.h"
+#include "measure/surface_sampler.h"
+#include "meshgrain/symmetry.h"
+
+namespace meshgrain {
+
+/// find_mirror_plane() for several axes of a mesh, which must outlive this.
+class PlaneSearch {
+ public:
+  explicit PlaneSearch(const Mesh& mesh);
+
+  MirrorPlane find(int axis, const Context& context) const;
+
+ private:
+  double mismatch(int axis, double offset, const Context& context) const;
+  double mismatch(int axis, double offset, std::size_t step, const Context& context) const;
+
+  const Mesh& mesh_;
+  Eigen::AlignedBox3d box_;
+  SurfaceSampler samples_;
+  Bvh tree_;
+};
+
+}  // namespace meshgrain
