@@ -27,12 +27,9 @@ Edges inner_marks(const Mesh& mesh, const Context& context) {
   return result;
 }
 
-}  // namespace
-
-bool FeatureLines::is_closed(std::size_t line) const {
-  const Index v = vertices[begin(line)];
-  return v == vertices[end(line) - 1] && !std::binary_search(corners.begin(), corners.end(), v);
-}
+struct RimAndCreases {
+  Edges rim, creases;  // creases: those that are not marked
+};
 
 RimAndCreases rim_and_creases(const Mesh& mesh, const FeatureOptions& options,
                               const Context& context) {
@@ -48,6 +45,18 @@ RimAndCreases rim_and_creases(const Mesh& mesh, const FeatureOptions& options,
     return {std::move(found.rim), std::move(creases)};
   }
   return {rim_edges(mesh, context), {}};
+}
+
+}  // namespace
+
+bool FeatureLines::is_closed(std::size_t line) const {
+  const Index v = vertices[begin(line)];
+  return v == vertices[end(line) - 1] && !std::binary_search(corners.begin(), corners.end(), v);
+}
+
+Edges find_creases(const Mesh& mesh, const FeatureOptions& options, const Context& context) {
+  const bool any = options.creases == Creases::automatic || options.creases == Creases::by_angle;
+  return any ? rim_and_creases(mesh, options, context).creases : Edges();
 }
 
 std::vector<EdgeOfLine> feature_edges(const Mesh& mesh, const FeatureOptions& options,

@@ -8,13 +8,9 @@
 
 namespace meshgrain {
 
-/// Edges as their ends, the smaller index first.
-struct RimAndCreases {
-  std::vector<std::array<Index, 2>> rim, creases;
-};
-/// rim_edges(), and the creases that are not marked.
-RimAndCreases rim_and_creases(const Mesh& triangles, const FeatureOptions& options,
-                              const Context& context);
+/// The creases that are not marked, as the vertices at their ends.
+std::vector<std::array<Index, 2>> find_creases(const Mesh& triangles, const FeatureOptions& options,
+                                               const Context& context);
 
 /// The edges of the border and of the creases, each once, but for creases that faces with sides of
 /// `edge_length` could not follow.

@@ -71,7 +71,7 @@ void Pipeline::coarsen() {
   // What is a crease is to be seen where the surface is as it was.
   stage_("features", [&] {
     had_marks_ = !surface_.marked_edges.empty();
-    const auto creases = rim_and_creases(surface_, feature_options(), context_).creases;
+    const auto creases = find_creases(surface_, feature_options(), context_);
     surface_.marked_edges.insert(surface_.marked_edges.end(), creases.begin(), creases.end());
     is_coarsened_ = true;
   });

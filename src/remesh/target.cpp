@@ -77,7 +77,9 @@ bool Target::is_dense(const RemeshOptions& options, std::size_t vertices,
   // For something to be gained.
   constexpr double enough = 0.9;  // of the shortest edges
   constexpr std::size_t many = 8000;
-  return options.coarsen && options.graph.nodes == GraphNodes::vertices && vertices >= many &&
+  const bool may = options.coarsen && options.fields == nullptr &&  // of which all are wanted
+                   options.graph.nodes == GraphNodes::vertices;
+  return may && vertices >= many &&
          size.edges.mean < enough * double{coarse_edges(options, size.area).shortest};
 }
 
