@@ -54,23 +54,21 @@ void CollapsingPiece::find_rings(std::span<const Triangle> triangles) {
   }
   for (Index v = 0; v < positions_.size(); ++v) {
     if (!is_free_[v]) continue;
-    const std::size_t count = faces_[v];
-    const std::array<Index, 2>* const edges = opposite.data() + first[v + 1];
-    Ring& ring = rings_[v];
-    // One closed fan: who follows the edges has met each once when back at the first.
-    bool is_fan = count >= 3 && count <= most_neighbors;
-    for (Index next = is_fan ? edges[0][0] : 0; is_fan && ring.size < count;) {
-      std::size_t k = 0;
-      while (k < count && edges[k][0] != next) ++k;
-      is_fan = k < count && (ring.size == 0 || next != ring.around[0]);
-      if (!is_fan) break;
-      ring.around[ring.size++] = next;
-      next = edges[k][1];
-      is_fan = ring.size < count || next == ring.around[0];
-    }
-    is_free_[v] = is_fan;
-    if (!is_fan) ring.size = 0;
+    is_free_[v] = follow({opposite.data() + first[v + 1], faces_[v]}, rings_[v]);
+    if (!is_free_[v]) rings_[v].size = 0;
   }
+}
+
+bool CollapsingPiece::follow(std::span<const std::array<Index, 2>> edges, Ring& ring) {
+  if (edges.size() < 3 || edges.size() > most_neighbors) return false;
+  Index next = edges[0][0];
+  do {
+    const auto edge = std::ranges::find(edges, next, [](const auto& e) { return e[0]; });
+    if (edge == edges.end() || ring.size == edges.size()) return false;
+    ring.around[ring.size++] = next;
+    next = (*edge)[1];
+  } while (next != edges[0][0]);
+  return ring.size == edges.size();
 }
 
 double CollapsingPiece::mean_edge() const {

@@ -49,6 +49,8 @@ class CollapsingPiece {
   };
 
   void find_rings(std::span<const Triangle> triangles);
+  /// The ring of a vertex from the edges opposite to it. False if these are not one closed fan.
+  static bool follow(std::span<const std::array<Index, 2>> edges, Ring& ring);
   double mean_edge() const;
   /// Returns how many vertices went.
   std::size_t sweep(float shortest);
