@@ -101,6 +101,21 @@ TEST(Coarsen, SomeVerticesKeepTheirPlaces) {
   EXPECT_EQ(rim_edges(coarse).size(), rim_edges(fine).size());
 }
 
+/// Of triangles that are not joined none can go.
+TEST(Coarsen, SoupStaysAsItIs) {
+  const Mesh blob = sample_shape("blob", 1);
+  Mesh soup;
+  for (const Index v : blob.faces.corners()) {
+    soup.positions.push_back(blob.positions[v]);
+    const auto last = static_cast<Index>(soup.positions.size() - 1);
+    if (last % 3 == 2) soup.faces.push_back({last - 2, last - 1, last});
+  }
+  Mesh coarse = soup;
+  EXPECT_EQ(coarsen(coarse, times_mean(soup, 3, 6)).size(), soup.positions.size());
+  EXPECT_EQ(coarse.positions, soup.positions);
+  EXPECT_EQ(coarse.faces.size(), soup.faces.size());
+}
+
 TEST(Coarsen, AnyNumberOfThreadsGivesTheSame) {
   const Mesh fine = dense("blob", 5);
   ASSERT_GT(fine.faces.size(), 3 * 32768u);  // several runs

@@ -88,6 +88,7 @@ void CollapsingPiece::collapse_short_edges(const CoarseEdges& edges) {
   // Little by little, or some vertices would take all of their neighbours, and many of theirs.
   constexpr float growth = 1.4f;
   float shortest = growth * static_cast<float>(mean_edge());
+  if (!(shortest > 0)) return;  // no vertex is free
   for (;; shortest *= growth) {
     shortest = std::min(shortest, edges.shortest);
     is_new_.assign(positions_.size(), 1);
