@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
+
 namespace meshgrain {
 namespace {
 
@@ -26,6 +31,24 @@ TEST(Faces, MixedDegreesKeepEveryFace) {
   EXPECT_EQ(faces.degree(2), 5u);
   EXPECT_EQ(faces[2][4], 7u);
   EXPECT_EQ(faces[0][0], 0u);
+}
+
+TEST(Faces, ManyAtOnceAreTheSameAsOneByOne) {
+  const std::vector<Index> triangles = {0, 1, 2, 2, 1, 3}, quads = {4, 5, 6, 7};
+  Faces faces, expected;
+  for (const auto& [corners, degree] : {std::pair(triangles, 3), std::pair(triangles, 3),
+                                        std::pair(quads, 4), std::pair(triangles, 3)}) {
+    const auto n = static_cast<std::size_t>(degree);
+    faces.append(corners, n);
+    for (std::size_t k = 0; k < corners.size(); k += n) {
+      expected.push_back(std::span(corners).subspan(k, n));
+    }
+    ASSERT_EQ(faces.size(), expected.size());
+    EXPECT_EQ(faces.uniform_degree(), expected.uniform_degree());
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      EXPECT_TRUE(std::ranges::equal(std::as_const(faces)[f], std::as_const(expected)[f]));
+    }
+  }
 }
 
 }  // namespace

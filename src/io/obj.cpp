@@ -88,28 +88,35 @@ class Reader {
   /// Of lines that are like each other, as long as there are any. What is between them, and short
   /// ones, are read line by line.
   void read_runs() {
-    constexpr std::ptrdiff_t few = 1 << 14;  // bytes
-    const char* before = nullptr;
+    constexpr std::size_t few = 1 << 14;  // bytes
+    std::size_t parts = 1, bytes = 0;
     do {
       if (text_.line_ends()) break;
-      before = text_.at();
-      if (text_.word_is("v") && !input_.options().paint) {
-        for (const ObjNumbers& part : read_run_of_numbers(text_, "v", input_)) {
-          for (const auto& [x, y, z] : part) coordinates_.push(x, y, z);
-        }
-      } else if (text_.word_is("vn")) {
-        for (const ObjNumbers& part : read_run_of_numbers(text_, "vn", input_)) {
-          for (const auto& [x, y, z] : part) {
-            shading_.normals.push_back(Eigen::Vector3d(x, y, z).cast<float>());
-          }
-        }
-      } else if (text_.word_is("f")) {
-        const auto parts = read_run_of_faces(text_, coordinates_.size(), input_);
-        for (const ObjFaces& part : parts) add_faces(part);
-      }
+      const char* const before = text_.at();
+      read_run(parts);
       input_.progress(text_.at());
-    } while (text_.at() - before > few);
-    next_run_ = text_.at() + std::min(few, input_.end() - text_.at());
+      bytes = static_cast<std::size_t>(text_.at() - before);
+      parts = bytes >= parts * run_part ? std::min(2 * parts, most_run_parts) : 1;
+    } while (bytes > few);
+    next_run_ = text_.at() + std::min<std::ptrdiff_t>(few, input_.end() - text_.at());
+  }
+
+  void read_run(std::size_t parts) {
+    if (text_.word_is("v") && !input_.options().paint) {
+      for (const ObjNumbers& part : read_run_of_numbers(text_, "v", parts, input_)) {
+        for (const auto& [x, y, z] : part) coordinates_.push(x, y, z);
+      }
+    } else if (text_.word_is("vn")) {
+      for (const ObjNumbers& part : read_run_of_numbers(text_, "vn", parts, input_)) {
+        for (const auto& [x, y, z] : part) {
+          shading_.normals.push_back(Eigen::Vector3d(x, y, z).cast<float>());
+        }
+      }
+    } else if (text_.word_is("f")) {
+      for (const ObjFaces& part : read_run_of_faces(text_, coordinates_.size(), parts, input_)) {
+        add_faces(part);
+      }
+    }
   }
 
   void add_faces(const ObjFaces& faces) {
@@ -191,7 +198,7 @@ class Reader {
     const char* const at = text_.at();
     const std::string_view word = text_.word();
     const ObjCorner corner = parse_corner(word);
-    if (corner.kind == ObjCorner::Kind::no_index) {
+    if (corner.kind == ObjCorner::Kind::no_number) {
       text_.fail(at, fmt::format("expected a vertex index, found {}", in_quotes(word)));
     }
     std::int64_t number = corner.vertex;

@@ -6,16 +6,14 @@
 namespace meshgrain::io {
 namespace {
 
-/// Bytes that a thread reads at a time, and of all that is held at once.
-constexpr std::size_t chunk = 1 << 18, window = std::size_t{64} * chunk;
-
 /// What `read_line(line, out)` makes of lines, in parts; it returns false where the run ends.
 template <typename Part, typename ReadLine>
-std::vector<Part> read_run(Text& text, const Input& input, const ReadLine& read_line) {
+std::vector<Part> read_run(Text& text, std::size_t most, const Input& input,
+                           const ReadLine& read_line) {
   const char* const begin = text.at();
   std::vector<const char*> ends{begin};
-  while (ends.back() != input.end() && ends.back() - begin < static_cast<std::ptrdiff_t>(window)) {
-    ends.push_back(text.line_after(ends.back(), chunk));
+  while (ends.back() != input.end() && ends.size() <= most) {
+    ends.push_back(text.line_after(ends.back(), run_part));
   }
   const std::size_t count = ends.size() - 1;
   std::vector<Part> parts(count);
@@ -67,30 +65,29 @@ bool read_face(Text& line, std::size_t vertices, ObjFaces& out) {
 }  // namespace
 
 ObjCorner parse_corner(std::string_view word) {
-  using enum ObjCorner::Kind;
+  ObjCorner corner;
   const char* const end = word.data() + word.size();
-  ObjCorner corner{no_index, 0, 0, word};
   const auto [rest, error] = std::from_chars(word.data(), end, corner.vertex);
   corner.name = {word.data(), rest};
   if (error == std::errc::result_out_of_range) {
-    corner.kind = out_of_range;
+    corner.kind = ObjCorner::Kind::out_of_range;
     return corner;
   }
   const std::string_view others(rest, end);
-  const bool is_index = error == std::errc() && (rest == end || *rest == '/') &&
-                        others.find_first_not_of("/-0123456789") == word.npos;
+  const bool is_index = error == std::errc() && (others.empty() || others.front() == '/') &&
+                        others.find_first_not_of("/-0123456789") == others.npos;
   if (!is_index) return corner;
-  corner.kind = index;
+  corner.kind = ObjCorner::Kind::index;
+  // The last of two or three numbers is the normal's if another one, or nothing, comes before it.
   const std::size_t slash = others.rfind('/');
-  if (slash == word.npos || slash == 0) return corner;
-  std::int64_t normal = 0;
-  std::from_chars(rest + slash + 1, end, normal);
-  corner.normal = normal;
+  if (slash == others.npos || slash == 0) return corner;
+  std::from_chars(rest + slash + 1, end, corner.normal);
   return corner;
 }
 
-std::vector<ObjNumbers> read_run_of_numbers(Text& text, std::string_view name, const Input& input) {
-  return read_run<ObjNumbers>(text, input, [&](Text& line, ObjNumbers& out) {
+std::vector<ObjNumbers> read_run_of_numbers(Text& text, std::string_view name, std::size_t parts,
+                                            const Input& input) {
+  return read_run<ObjNumbers>(text, parts, input, [&](Text& line, ObjNumbers& out) {
     if (!line.word_is(name)) return false;
     line.advance(name.size());
     std::array<double, 3> row{};
@@ -102,8 +99,9 @@ std::vector<ObjNumbers> read_run_of_numbers(Text& text, std::string_view name, c
   });
 }
 
-std::vector<ObjFaces> read_run_of_faces(Text& text, std::size_t vertices, const Input& input) {
-  return read_run<ObjFaces>(text, input, [&](Text& line, ObjFaces& out) {
+std::vector<ObjFaces> read_run_of_faces(Text& text, std::size_t vertices, std::size_t parts,
+                                        const Input& input) {
+  return read_run<ObjFaces>(text, parts, input, [&](Text& line, ObjFaces& out) {
     return read_face(line, std::min<std::size_t>(vertices, no_index), out);
   });
 }
