@@ -38,7 +38,8 @@ bool all_have(const Mesh& mesh, std::size_t degree) {
   return true;
 }
 
-/// Adds the vertex for a chord.
+/// Adds the vertex for a chord from a to b: where that would be on the plane, as far off it as a
+/// round limb would be there.
 void add_vertex(Mesh& mesh, Vec3 position, Index a, Index b, int axis,
                 std::vector<std::uint8_t>& on_plane) {
   if (position[axis] == 0) position[axis] = (mesh.positions[a] - mesh.positions[b]).norm() / 2;
@@ -85,14 +86,28 @@ void open_chords(Mesh& mesh, std::vector<std::uint8_t>& on_plane, int axis) {
   }
 }
 
+/// Of the corners of the faces at a chord over the plane.
+float mean_height(const Mesh& mesh, const std::vector<PlaneSide>& sides, int axis) {
+  float sum = 0, corners = 0;
+  for (const PlaneSide& side : sides) {
+    for (const Index v : std::as_const(mesh.faces)[side.face]) {
+      sum += mesh.positions[v][axis];
+      ++corners;
+    }
+  }
+  return sum / corners;
+}
+
 /// Of any mesh: they are halved. Triangles stay triangles.
 void split_chords(Mesh& mesh, std::vector<std::uint8_t>& on_plane, int axis) {
   const bool triangles = all_have(mesh, 3);
   std::map<std::pair<Index, Index>, Index> middles;
   for (const auto& [edge, sides] : find_chords(mesh, on_plane)) {
     const auto [a, b] = edge;
+    Vec3 middle = 0.5f * (mesh.positions[a] + mesh.positions[b]);
+    middle[axis] = mean_height(mesh, sides, axis);
     middles[edge] = static_cast<Index>(mesh.positions.size());
-    add_vertex(mesh, 0.5f * (mesh.positions[a] + mesh.positions[b]), a, b, axis, on_plane);
+    add_vertex(mesh, middle, a, b, axis, on_plane);
   }
   if (middles.empty()) return;
   Faces faces;

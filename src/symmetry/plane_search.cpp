@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "meshgrain/surface.h"
+#include "util/bounding_box.h"
 
 namespace meshgrain {
 namespace {
@@ -25,10 +26,11 @@ double center_of_area(const Mesh& mesh, int axis) {
 
 }  // namespace
 
-PlaneSearch::PlaneSearch(const Mesh& mesh)
-    : mesh_(mesh), samples_(mesh, sample_count), tree_(mesh) {
-  for (const Vec3& p : mesh.positions) box_.extend(p.cast<double>());
-}
+PlaneSearch::PlaneSearch(const Mesh& mesh, const Context& context)
+    : mesh_(mesh),
+      box_(bounding_box(mesh.positions, context)),
+      samples_(mesh, sample_count),
+      tree_(mesh) {}
 
 /// The mean distance of the mirror image to the mesh, over its diagonal.
 double PlaneSearch::mismatch(int axis, double offset, const Context& context) const {
@@ -53,11 +55,11 @@ double PlaneSearch::mismatch(int axis, double offset, std::size_t step,
     }
   });
   const double sum = std::accumulate(distances.begin(), distances.end(), 0.0);
-  return sum / static_cast<double>(count) / box_.diagonal().norm();
+  return sum / static_cast<double>(count) / box_.diagonal().cast<double>().norm();
 }
 
 MirrorPlane PlaneSearch::find(int axis, const Context& context) const {
-  MirrorPlane best{axis, box_.center()[axis], 0};
+  MirrorPlane best{axis, (double{box_.min()[axis]} + box_.max()[axis]) / 2, 0};
   best.mismatch = mismatch(axis, best.offset, context);
   const double center = center_of_area(mesh_, axis);
   const double other = mismatch(axis, center, context);
@@ -65,7 +67,7 @@ MirrorPlane PlaneSearch::find(int axis, const Context& context) const {
 }
 
 MirrorPlane find_mirror_plane(const Mesh& mesh, int axis, const Context& context) {
-  return PlaneSearch(mesh).find(axis, context);
+  return PlaneSearch(mesh, context).find(axis, context);
 }
 
 }  // namespace meshgrain

@@ -11,7 +11,7 @@ namespace meshgrain {
 /// find_mirror_plane() for several axes of a mesh, which must outlive this.
 class PlaneSearch {
  public:
-  explicit PlaneSearch(const Mesh& mesh);
+  PlaneSearch(const Mesh& mesh, const Context& context);
 
   MirrorPlane find(int axis, const Context& context) const;
 
@@ -20,7 +20,7 @@ class PlaneSearch {
   double mismatch(int axis, double offset, std::size_t step, const Context& context) const;
 
   const Mesh& mesh_;
-  Eigen::AlignedBox3d box_;
+  Eigen::AlignedBox3f box_;
   SurfaceSampler samples_;
   Bvh tree_;
 };

@@ -23,7 +23,7 @@ namespace {
 std::vector<MirrorPlane> find_symmetry(const Mesh& input, const Symmetry& symmetry,
                                        std::vector<std::string>& notes, const Context& context) {
   constexpr double tolerance = 0.01;  // of the diagonal, for the mean distance to the mirror image
-  const PlaneSearch search(input);
+  const PlaneSearch search(input, context);
   std::vector<MirrorPlane> planes;
   for (int axis = 0; axis < 3; ++axis) {
     if (!symmetry.automatic && !symmetry.axes[axis]) continue;
@@ -81,11 +81,11 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const Context& 
     const double middle = input.origin[plane.axis];
     coordinate = middle + std::abs(coordinate - middle);
   }
-  const bool is_closed =
-      planes.size() == 1 && std::ranges::all_of(border_edges(input), [&](const auto& edge) {
-        return input.positions[edge[0]][planes[0].axis] == 0 &&
-               input.positions[edge[1]][planes[0].axis] == 0;
-      });
+  const bool is_closed = planes.size() == 1 &&
+                         std::ranges::all_of(border_edges(input, context), [&](const auto& edge) {
+                           return input.positions[edge[0]][planes[0].axis] == 0 &&
+                                  input.positions[edge[1]][planes[0].axis] == 0;
+                         });
   // Where a half is a single quad wide, its two sides would be in the plane.
   if (!planes.empty()) options.fine_lattice = false;
   RemeshResult result = remesh(std::move(input), options, context);
