@@ -107,7 +107,7 @@ class Round {
 
   std::vector<Index> compact(const std::vector<std::vector<Triangle>>& left) {
     std::vector<Index> kept;
-    std::vector<Index>& number = place_;
+    std::vector<Index>& number = place_;  // which is of no use any more
     for (Index v = 0; v < mesh_.positions.size(); ++v) {
       number[v] = static_cast<Index>(kept.size());
       if (!is_gone_[v]) kept.push_back(v);

@@ -6,8 +6,8 @@
 namespace meshgrain {
 namespace {
 
-/// Nodes a block. Long blocks have fewer neighbours, and lie close together in memory. But each
-/// colour must have several times as many of them as there are SIMD lanes.
+/// Nodes a block. Long blocks have fewer neighbours, and lie close together in memory. But each of
+/// the colours, about seven, must have as many of them as there are SIMD lanes.
 std::size_t block_size(std::size_t nodes) {
   constexpr std::size_t least_blocks = 96;
   return std::clamp(std::bit_floor(nodes / least_blocks), std::size_t{1}, BlockColoring::longest);

@@ -73,8 +73,8 @@ void Pipeline::coarsen() {
     had_marks_ = !surface_.marked_edges.empty();
     const auto creases = find_creases(surface_, feature_options(), context_);
     surface_.marked_edges.insert(surface_.marked_edges.end(), creases.begin(), creases.end());
-    is_coarsened_ = true;
   });
+  is_coarsened_ = true;
   stage_("coarsen", [&] {
     std::vector<std::uint8_t> stays(surface_.positions.size(), 0);
     for (const auto& [a, b] : surface_.marked_edges) stays[a] = stays[b] = 1;
