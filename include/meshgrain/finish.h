@@ -32,9 +32,9 @@ struct SmoothOptions {
   /// The lines that Extraction::line_edges follow; without any, those of the surface's border.
   const FeatureLines* features = nullptr;
   EdgeLength relative_size{1.0f};  ///< Relative to each other: one, or one a node of the graph.
-  /// From 0 to 1: how far vertices go off the surface in the end, so that faces are not all inside
-  /// of what is convex.
-  double lift = 0;
+  /// From 0 to 1: how far vertices go in the end so that the faces between them are nearer to the
+  /// surface, towards its ridges and a little off it.
+  double fit = 0;
   /// The mesh is only meant to cover a part of the surface, and changes little: no vertex is held
   /// out at the ends of the surface, and faces that pass through each other are not parted.
   bool is_part = false;

@@ -12,7 +12,7 @@
 
 #include "finish/bare_ends.h"
 #include "finish/face_shape.h"
-#include "finish/lift.h"
+#include "finish/fit_to_surface.h"
 #include "finish/local_search.h"
 #include "finish/mend_places.h"
 #include "finish/placement.h"
@@ -94,8 +94,8 @@ class Smoother {
   /// Mends single faces that are turned over, nearly degenerate, or pass through others.
   void mend();
 
-  /// Off the surface, so that the faces lie on both sides of it.
-  void lift();
+  /// Brings the faces nearer to the surface, with vertices that go off it.
+  void fit_faces();
 
  private:
   template <typename Body>
@@ -326,8 +326,8 @@ void Smoother::mend() {
   mend_places(mesh_, around_, placement_, search, options_, context_);
 }
 
-void Smoother::lift() {
-  if (options_.lift > 0) lift_vertices(extraction_, around_, placement_, options_.lift, context_);
+void Smoother::fit_faces() {
+  if (options_.fit > 0) fit_to_surface(extraction_, around_, placement_, options_.fit, context_);
 }
 
 }  // namespace
@@ -360,7 +360,7 @@ void smooth(Extraction& extraction, const Mesh& surface, const VertexFaces& arou
   }
   smoother.iterate(iterations - done, true);
   smoother.mend();
-  smoother.lift();
+  smoother.fit_faces();
 }
 
 }  // namespace meshgrain

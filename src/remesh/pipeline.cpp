@@ -388,7 +388,7 @@ void Pipeline::smooth_faces() {
     if (options_.faces == OutputFaces::quad_dominant) smoothing.evenness = 0.48;
     const EdgeLength& lengths = fields().position.edge_length;
     if (!lengths.uniform() && nodes_are_vertices_) smoothing.relative_size = lengths;
-    smoothing.lift = options_.sizing.adaptive;
+    smoothing.fit = options_.sizing.adaptive;
     smoothing.corners_stay = !borders_.empty();
     if (!is_cloud_ && nodes_are_vertices_) smoothing.features = &features_;
     const VertexFaces around = is_cloud_ ? VertexFaces{} : vertex_faces(surface_, context_);
