@@ -22,7 +22,8 @@ Chords::Chords(const Mesh& mesh, std::span<const LineEdge> edges, const Rails& r
       ways_(rails.lines().vertices.size(), 0),
       beside_(mesh.positions.size(), {no_index, no_index}),
       line_(mesh.positions.size(), no_index),
-      goes_around_(mesh.positions.size(), 0) {
+      goes_around_(mesh.positions.size(), 0),
+      faces_beside_(mesh.positions.size(), 0) {
   for (Index line = 0; line < lines().size(); ++line) {
     for (Index k = lines().begin(line) + 1; k < lines().end(line); ++k) {
       ways_[k] = ways_[k - 1] + (lines().positions[k] - lines().positions[k - 1]).norm();
@@ -34,6 +35,14 @@ Chords::Chords(const Mesh& mesh, std::span<const LineEdge> edges, const Rails& r
       if (!rails_.slides(v)) continue;
       beside_[v][beside_[v][0] != no_index] = w;
       line_[v] = line;
+    }
+  }
+  if (edges.empty()) return;
+  for (Index f = 0; f < mesh.faces.size(); ++f) {
+    const auto face = mesh.faces[f];
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const Index v = face[k], next = face[k + 1 < face.size() ? k + 1 : 0];
+      if (std::ranges::find(beside_[v], next) != beside_[v].end()) ++faces_beside_[v];
     }
   }
 }
@@ -121,8 +130,35 @@ std::optional<Chords::Stop> Chords::slide(Index v, const Vec3& p) const {
     const double share = std::max(*after - from, from - *before) / length(line);
     evenly = std::clamp(strongly * (share - large), 0.0, 1.0);
   }
-  const double drawn = to + evenly * ((*before + *after) / 2 - to);
+  double drawn = to + evenly * ((*before + *after) / 2 - to);
+  if (faces_beside_[v] == 2) drawn = balance(line, *before, from, *after, drawn);
   return stop_at(line, std::clamp(drawn, (*before + from) / 2, (from + *after) / 2));
+}
+
+double Chords::balance(Index line, double before, double here, double after, double to) const {
+  constexpr double far = 0.045, too_far = 0.07, least = 0.02, tiny = 1e-30;
+  const double behind = depth(line, before, here), ahead = depth(line, here, after);
+  const double excess = (std::max(behind, ahead) - far) / (too_far - far);
+  if (!(excess > 0)) return to;
+  // Depths are as the squares of lengths.
+  const double turn_behind = std::sqrt(std::max(behind, least)) / std::max(here - before, tiny);
+  const double turn_ahead = std::sqrt(std::max(ahead, least)) / std::max(after - here, tiny);
+  const double balanced = before + (after - before) * turn_ahead / (turn_behind + turn_ahead);
+  return to + std::min(excess, 1.0) * (balanced - to);
+}
+
+double Chords::depth(Index line, double from, double to) const {
+  const Vec3 begin = stop_at(line, from).position, end = stop_at(line, to).position;
+  const auto offset = [&](double share) -> Vec3 {
+    const Vec3 p = stop_at(line, from + share * (to - from)).position;
+    return p - closest_point_on_segment<Vec3>(p, begin, end);
+  };
+  const Vec3 middle = offset(0.5);
+  const float depth = middle.norm();
+  if (!(depth > 0)) return 0;
+  // A circle is there by 8 / 9 of that.
+  const float beside = std::min(offset(1.0 / 3).dot(middle), offset(2.0 / 3).dot(middle)) / depth;
+  return std::clamp(9.0f / 8 * beside, 0.0f, depth) / edge_;
 }
 
 double Chords::cut_off(Index line, const Stop& from, const Stop& to) const {

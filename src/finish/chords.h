@@ -50,7 +50,8 @@ class Chords {
   /// Notes where all that slide are.
   void note_ways(const Context& context);
   /// Where a vertex that wants to slide to p goes: no farther than half of the way from where it
-  /// was noted to its neighbours, so that none passes another even if all slide at once. Around
+  /// was noted to its neighbours, so that none passes another even if all slide at once. Where its
+  /// edges lie far from a crease that turns, it goes to where both are as far. Around
   /// closed lines the order is that of set_order(), and there, the more of the line is between
   /// them, the more evenly: edges over half of it are not long. Nothing if the neighbours were not
   /// on both sides.
@@ -63,6 +64,12 @@ class Chords {
   double cut_off(Index v) const;
 
  private:
+  /// The way between two others where the chords to these lie as far from the line, the more so the
+  /// farther they lie from it at `here`; else `to`.
+  double balance(Index line, double before, double here, double after, double to) const;
+  /// How far the line between two ways bends away from the chord between them, in edge lengths;
+  /// what goes to and fro is not far.
+  double depth(Index line, double from, double to) const;
   /// Where the vertices beside one were noted.
   std::array<std::optional<double>, 2> ways_beside(Index v) const;
   std::optional<double> way(Index v, const Vec3& p, Index line, double near) const;
@@ -74,7 +81,9 @@ class Chords {
   std::vector<Index> line_;
   std::vector<double> noted_;              // ways of vertices
   std::vector<std::uint8_t> goes_around_;  // in order: `beside_` has the one behind first
-  double edge_ = 0;                        // the mean length
+  // How many faces lead from a vertex on along its line: two beside creases, one beside borders.
+  std::vector<std::uint8_t> faces_beside_;
+  double edge_ = 0;  // the mean length
 };
 
 }  // namespace meshgrain
