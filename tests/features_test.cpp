@@ -214,6 +214,21 @@ TEST(Features, SmallCirclesStayCircles) {
   }
 }
 
+/// Many rows end on the hole's side towards the rim of the plate, and few on the other one.
+TEST(Features, RimsOfHolesKeepTheirCurve) {
+  double creases = 0;
+  int runs = 0;
+  for (const double resolution : {1.8, 2.0, 2.2}) {
+    const Mesh input = sample_shape("bracket", resolution);
+    for (std::size_t count = 440; count <= 560; count += 20, ++runs) {
+      RemeshOptions options;
+      options.face_count = count;
+      creases += made::kept_creases(input, remesh(input, options).mesh).creases;
+    }
+  }
+  EXPECT_GT(creases / runs, 0.998);
+}
+
 /// Lattices of 4 and of 5 cells meet on the sides of the first two.
 TEST(Features, EdgesOfADenseCubeStayStraight) {
   const Mesh input = sample_shape("cube", 4);
