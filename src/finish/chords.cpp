@@ -13,6 +13,9 @@ namespace {
 // Distance of a line from its edges, in their lengths: on a circle, edges of half its radius leave
 // it by that.
 constexpr double tolerated = 0.06;
+// What vertices begin to slide away from while faces are smoothed: earlier, as the faces draw them
+// back.
+constexpr double far = 0.045;
 
 }  // namespace
 
@@ -95,10 +98,10 @@ void Chords::note_ways(const Context& context) {
   });
 }
 
-std::array<std::optional<double>, 2> Chords::ways_beside(Index v) const {
+Chords::Ways Chords::ways_beside(Index v) const {
   const Index line = line_[v];
   const double from = noted_[v];
-  std::array<std::optional<double>, 2> result;
+  Ways result;
   for (const int k : {0, 1}) {
     const Index w = beside_[v][k];
     if (w == no_index) continue;
@@ -118,7 +121,8 @@ std::array<std::optional<double>, 2> Chords::ways_beside(Index v) const {
 std::optional<Chords::Stop> Chords::slide(Index v, const Vec3& p) const {
   const Index line = line_[v];
   if (line == no_index) return std::nullopt;
-  auto [before, after] = ways_beside(v);
+  const auto beside = ways_beside(v);
+  auto [before, after] = beside;
   if (!before || !after) return std::nullopt;
   if (*before > *after) std::swap(before, after);
   const double from = noted_[v];
@@ -131,12 +135,24 @@ std::optional<Chords::Stop> Chords::slide(Index v, const Vec3& p) const {
     evenly = std::clamp(strongly * (share - large), 0.0, 1.0);
   }
   double drawn = to + evenly * ((*before + *after) / 2 - to);
-  if (faces_beside_[v] == 2) drawn = balance(line, *before, from, *after, drawn);
+  if (may_lie_far(v, beside)) drawn = balance(line, *before, from, *after, drawn);
   return stop_at(line, std::clamp(drawn, (*before + from) / 2, (from + *after) / 2));
 }
 
+bool Chords::may_lie_far(Index v, const Ways& ways) const {
+  constexpr int beside_crease = 2;
+  if (faces_beside_[v] != beside_crease) return false;
+  for (const int k : {0, 1}) {
+    // No curve of that length gets farther from its chord than the ellipse around the ends.
+    const double way = *ways[k] - noted_[v];
+    const double chord = (mesh_.positions[beside_[v][k]] - mesh_.positions[v]).squaredNorm();
+    if (way * way - chord > 4 * far * far * edge_ * edge_) return true;
+  }
+  return false;
+}
+
 double Chords::balance(Index line, double before, double here, double after, double to) const {
-  constexpr double far = 0.045, too_far = 0.07, least = 0.02, tiny = 1e-30;
+  constexpr double too_far = 0.07, least = 0.02, tiny = 1e-30;
   const double behind = depth(line, before, here), ahead = depth(line, here, after);
   const double excess = (std::max(behind, ahead) - far) / (too_far - far);
   if (!(excess > 0)) return to;

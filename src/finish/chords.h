@@ -64,6 +64,10 @@ class Chords {
   double cut_off(Index v) const;
 
  private:
+  using Ways = std::array<std::optional<double>, 2>;
+
+  /// Whether an edge of v along a crease may lie far from it. Quick, as most creases are straight.
+  bool may_lie_far(Index v, const Ways& beside) const;
   /// The way between two others where the chords to these lie as far from the line, the more so the
   /// farther they lie from it at `here`; else `to`.
   double balance(Index line, double before, double here, double after, double to) const;
@@ -71,7 +75,7 @@ class Chords {
   /// what goes to and fro is not far.
   double depth(Index line, double from, double to) const;
   /// Where the vertices beside one were noted.
-  std::array<std::optional<double>, 2> ways_beside(Index v) const;
+  Ways ways_beside(Index v) const;
   std::optional<double> way(Index v, const Vec3& p, Index line, double near) const;
 
   const Mesh& mesh_;
