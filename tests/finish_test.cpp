@@ -455,9 +455,9 @@ TEST(Finish, HornsAreReached) {
   }
 }
 
-/// A square sheet of `n` quads a side from -1 to 1, of height(x); triangles where asked.
+/// A square sheet of `n` quads a side from -1 to 1, of height(x).
 template <typename Height>
-Mesh sheet(Index n, bool triangles, const Height& height) {
+Mesh sheet(Index n, const Height& height) {
   Mesh mesh;
   for (Index j = 0; j <= n; ++j) {
     for (Index i = 0; i <= n; ++i) {
@@ -468,13 +468,8 @@ Mesh sheet(Index n, bool triangles, const Height& height) {
   }
   for (Index j = 0; j < n; ++j) {
     for (Index i = 0; i < n; ++i) {
-      const Index a = j * (n + 1) + i, b = a + 1, c = b + n + 1, d = a + n + 1;
-      if (triangles) {
-        mesh.faces.push_back(std::array<Index, 3>{a, b, c});
-        mesh.faces.push_back(std::array<Index, 3>{a, c, d});
-      } else {
-        mesh.faces.push_back(std::array<Index, 4>{a, b, c, d});
-      }
+      const Index a = j * (n + 1) + i, b = a + 1;
+      mesh.faces.push_back(std::array<Index, 4>{a, b, b + n + 1, a + n + 1});
     }
   }
   return mesh;
@@ -485,29 +480,25 @@ TEST(Finish, VerticesGoToRidges) {
   constexpr Index coarse = 12;
   constexpr float ridge = 1.0f / (3 * coarse / 2);
   const auto roof = [](float x) { return -std::sqrt((x - ridge) * (x - ridge) + 0.0004f); };
-  const Mesh surface = sheet(144, true, roof);
+  const Mesh surface = triangulate(sheet(144, roof));
   const Graph graph = build_graph(surface);
-  Extraction extraction{sheet(coarse, false, roof), {}, {}, {}};
-  for (const Vec3& p : extraction.mesh.positions) {
-    const auto to_p = [&](const Vec3& a) { return (a - p).squaredNorm(); };
-    extraction.nodes.push_back(static_cast<Index>(
-        std::ranges::min_element(surface.positions, {}, to_p) - surface.positions.begin()));
-  }
-  const VertexFaces around_surface = vertex_faces(surface, Context());
-  const VertexFaces around = vertex_faces(extraction.mesh, Context());
+  const Mesh even = sheet(coarse, roof);
+  Extraction extraction{even, {}, {}, {}};
+  for (const Vec3& p : even.positions) extraction.nodes.push_back(nearest(surface, p));
+  const VertexFaces around_surface = vertex_faces(surface);
+  const VertexFaces around = vertex_faces(even);
   const FeatureLines none;
   Placement placement(extraction, surface, around_surface, graph, none);
-  const double before = surface_distance(extraction.mesh, surface, 1, 20000).mean;
+  const double before = surface_distance(even, surface, 1, 20000).mean;
   fit_to_surface(extraction, around, placement, 1, Context());
   EXPECT_LT(surface_distance(extraction.mesh, surface, 1, 20000).mean, 0.6 * before);
   // The row beside the ridge came nearer to it, and flat parts stayed as they are.
-  const Mesh sheet_before = sheet(coarse, false, roof);
   for (Index j = 1; j < coarse; ++j) {
     const auto place = [&](const Mesh& mesh, Index i) {
       return mesh.positions[j * (coarse + 1) + i];
     };
     EXPECT_LT(std::abs(place(extraction.mesh, coarse / 2).x() - ridge), 0.7f * ridge);
-    const Vec3 moved = place(extraction.mesh, 2) - place(sheet_before, 2);
+    const Vec3 moved = place(extraction.mesh, 2) - place(even, 2);
     EXPECT_LT(moved.norm(), 0.02f / coarse);
   }
 }

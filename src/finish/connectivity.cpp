@@ -92,10 +92,7 @@ void take_dual(Extraction& extraction) {
   std::vector<Index> ring;
   for (Index v = 0; v < mesh.positions.size(); ++v) {
     // Walk around the vertex: after face f comes the one that has f's edge into v as its edge out.
-    const auto corner = [&](Index f) {
-      const auto face = mesh.faces[f];
-      return static_cast<std::size_t>(std::find(face.begin(), face.end(), v) - face.begin());
-    };
+    const auto corner = [&](Index f) { return corner_of(mesh.faces[f], v); };
     const auto next_of = [&](Index f) {
       const auto face = mesh.faces[f];
       const Index from = face[(corner(f) + face.size() - 1) % face.size()];
@@ -153,8 +150,7 @@ std::size_t make_manifold(Extraction& extraction) {
     };
     const auto spokes = [&](Index f) {
       const auto face = std::as_const(mesh.faces)[f];
-      const auto k =
-          static_cast<std::size_t>(std::find(face.begin(), face.end(), v) - face.begin());
+      const auto k = corner_of(face, v);
       return std::pair(face[(k + 1) % face.size()], face[(k + face.size() - 1) % face.size()]);
     };
     for (Index a = 0; a < faces.size(); ++a) {

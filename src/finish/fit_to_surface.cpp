@@ -77,8 +77,7 @@ class Fit {
     for (const Index f : around_[v]) {
       const auto face = mesh_.faces[f];
       const std::size_t n = face.size();
-      const auto at =
-          static_cast<std::size_t>(std::find(face.begin(), face.end(), v) - face.begin());
+      const auto at = corner_of(face, v);
       const Vec3& p = mesh_.positions[v];
       const Vec3 next = mesh_.positions[face[(at + 1) % n]] - p;
       const Vec3 last = mesh_.positions[face[(at + n - 1) % n]] - p;
@@ -147,8 +146,7 @@ class Fit {
     for (const Index f : around_[v]) {
       const auto face = mesh_.faces[f];
       const std::size_t n = face.size();
-      const auto at =
-          static_cast<std::size_t>(std::find(face.begin(), face.end(), v) - face.begin());
+      const auto at = corner_of(face, v);
       sum += (mesh_.positions[face[(at + 1) % n]] - mesh_.positions[v]).norm();
     }
     return share * sum / static_cast<float>(around_[v].size());

@@ -1,7 +1,6 @@
 #include "finish/smooth.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -168,9 +167,8 @@ Smoother::Smoother(Extraction& extraction, const Mesh& surface, const VertexFace
   for_vertices([&](std::size_t v) {
     for (Index k = around_.offsets[v]; k < around_.offsets[v + 1]; ++k) {
       const auto face = std::as_const(mesh_.faces)[around_.faces[k]];
-      const auto corner = std::find(face.begin(), face.end(), v) - face.begin();
       corners_[k] = static_cast<Index>(mesh_.faces.first(around_.faces[k]) +
-                                       static_cast<std::size_t>(corner));
+                                       corner_of(face, static_cast<Index>(v)));
     }
   });
   normals_.resize(mesh_.positions.size());

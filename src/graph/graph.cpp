@@ -61,8 +61,7 @@ void weigh_edges(Graph& graph, const Mesh& mesh, const VertexFaces& around,
     for (auto v = static_cast<Index>(begin); v < end; ++v) {
       for (const Index f : around[v]) {
         const auto face = mesh.faces[f];
-        const auto k =
-            static_cast<std::size_t>(std::find(face.begin(), face.end(), v) - face.begin());
+        const auto k = corner_of(face, v);
         const Index b = face[(k + 1) % 3], c = face[(k + 2) % 3];
         const Vec3 &p = mesh.positions[v], &q = mesh.positions[b], &r = mesh.positions[c];
         graph.weights[graph.entry(v, b)] += 0.5f * cotangent(r, p, q);

@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "mesh/vertex_faces.h"
 #include "mesh/vertex_normals.h"
 
 namespace meshgrain {
@@ -45,8 +46,7 @@ struct Corner {
 
 Corner corner(const Mesh& mesh, const Vec3& face_normal, Index f, Index v) {
   const std::span<const Index> face = mesh.faces[f];
-  const std::size_t i =
-      static_cast<std::size_t>(std::find(face.begin(), face.end(), v) - face.begin());
+  const std::size_t i = corner_of(face, v);
   const Index previous = face[i == 0 ? face.size() - 1 : i - 1];
   const Index next = face[i + 1 == face.size() ? 0 : i + 1];
   const Vector3d p = mesh.positions[v].cast<double>();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,11 @@ struct VertexFaces {
 /// The faces around each vertex; a face that repeats a vertex appears as often. Throws Error if the
 /// mesh has more corners than an index can count.
 VertexFaces vertex_faces(const Mesh& mesh, const Context& context = Context());
+
+/// Which of a face's corners is v; their number if none is.
+inline std::size_t corner_of(std::span<const Index> face, Index v) {
+  return static_cast<std::size_t>(std::ranges::find(face, v) - face.begin());
+}
 
 /// The vertices of some faces, in increasing order.
 std::vector<Index> vertices_of(const Mesh& mesh, std::span<const Index> faces);
