@@ -11,6 +11,7 @@
 #include "field/rosy.h"
 #include "finish/crossings.h"
 #include "finish/face_shape.h"
+#include "util/sort_unique.h"
 #include "util/sum.h"
 
 namespace meshgrain {
@@ -135,11 +136,17 @@ Vec3 LocalSearch::mean_neighbor(Index v) const {
   return sum / count;
 }
 
-void LocalSearch::put(Index v, const Place& place) {
-  mesh_.positions[v] = place.position;
-  placement_.set_seed(v, place.seed);
-  normals_[v] = placement_.normal(v);
-  for (const Index f : around_[v]) quality_[f] = quality_here(f);
+void LocalSearch::put(std::span<const Index> vertices, std::span<const Place> places) {
+  std::vector<Index> faces;
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
+    const Index v = vertices[k];
+    mesh_.positions[v] = places[k].position;
+    placement_.set_seed(v, places[k].seed);
+    normals_[v] = placement_.normal(v);
+    faces.insert(faces.end(), around_[v].begin(), around_[v].end());
+  }
+  sort_unique(faces);
+  for (const Index f : faces) quality_[f] = quality_here(f);
 }
 
 /// Whether something has moved around v since it was last tried.
@@ -291,7 +298,7 @@ bool LocalSearch::improve(Index v) {
   mesh_.positions[v] = best;
   placement_.set_seed(v, best_seed);
   if (least > 0.99f * before) return false;
-  put(v, {best, best_seed});
+  put({{v}}, {{{best, best_seed}}});
   return true;
 }
 

@@ -45,7 +45,8 @@ class LocalSearch {
     Placement::Seed seed;
   };
   Place place(Index v) const { return {mesh_.positions[v], placement_.seed(v)}; }
-  void put(Index v, const Place& place);
+  /// Puts vertices at places, one for each.
+  void put(std::span<const Index> vertices, std::span<const Place> places);
 
   /// To be called when a vertex, or what is asked of it, has changed: it is then tried again.
   void touch(Index v) { moved_[v] = ++now_; }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -68,10 +69,12 @@ class Mending {
   // A mesh with more bad places is too coarse for its surface: no need to try for minutes.
   static constexpr std::size_t most_tried = 50;
   // For the same reason all that is tried for one of the demands has an end: in steps of a face.
-  static constexpr double effort_for_a_mesh = 1500000, effort_for_a_part = 100000;
+  static constexpr double effort_for_a_mesh = 1500000, effort_for_a_part = 20000;
   static constexpr double effort_a_face = 60, effort_to_slide_a_face = 1500;
-  static constexpr std::size_t tries = 6;              // that a face takes part in without success
+  // That a face takes part in without success, and one that is bad.
+  static constexpr std::size_t tries = 6, tries_to_reshape = 8;
   static constexpr std::size_t most_searched = 20000;  // faces of the surface in a place
+  static constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
 
   double effort() const {
     return options_.is_part
@@ -120,8 +123,9 @@ class Mending {
 
   void reshape_all(int rings) {
     std::size_t tried = 0;
+    std::vector<std::size_t> failed(mesh_.faces.size(), 0);
     for (Index f = 0; f < mesh_.faces.size(); ++f) {
-      if (!is_bad(f)) continue;
+      if (failed[f] >= tries_to_reshape || !is_bad(f)) continue;
       if (++tried > std::max(most_tried, mesh_.faces.size() / 100) || effort_left_ <= 0) break;
       Place place = around(f, f, rings);
       --place.bad;
@@ -129,7 +133,9 @@ class Mending {
       const bool is_last = demands_.quality <= 0;
       place.may_cross =
           place.crossings > 0 && !options_.is_part && (is_last || surface_crosses(place));
-      if (!reshape(place)) restore(place);
+      if (reshape(place)) continue;
+      restore(place);
+      for (const Index h : place.faces) ++failed[h];
     }
   }
 
@@ -139,9 +145,13 @@ class Mending {
   }
   bool is_bad(Index f) const { return falls_short(f, demands_); }
 
-  std::size_t count_short(const Place& place, const Demands& demands) const {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(place.faces, [&](Index f) { return falls_short(f, demands); }));
+  /// Here and below: no more are counted than `limit`.
+  std::size_t count_short(const Place& place, const Demands& demands, std::size_t limit) const {
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < place.faces.size() && count < limit; ++k) {
+      count += falls_short(place.faces[k], demands);
+    }
+    return count;
   }
 
   Place around(Index f, Index g, int rings) const {
@@ -160,17 +170,17 @@ class Mending {
       }
     }
     sort_unique(place.at_bad);
-    place.poor = count_short(place, not_poor);
-    place.crossings = count_crossings(place);
+    place.poor = count_short(place, not_poor, all);
+    place.crossings = count_crossings(place, all);
     return place;
   }
 
-  std::size_t count_crossings(const Place& place) const {
+  std::size_t count_crossings(const Place& place, std::size_t limit) const {
     std::vector<Eigen::AlignedBox3f> boxes;
     for (const Index f : place.faces) boxes.push_back(face_box(mesh_, f));
     std::size_t count = 0;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-      for (std::size_t j = i + 1; j < boxes.size(); ++j) {
+      for (std::size_t j = i + 1; j < boxes.size() && count < limit; ++j) {
         count +=
             boxes[i].intersects(boxes[j]) && penetration(mesh_, place.faces[i], place.faces[j]) > 0;
       }
@@ -179,9 +189,10 @@ class Mending {
   }
 
   bool is_mended(const Place& place) const {
-    return count_short(place, demands_) <= place.bad &&
-           count_short(place, not_poor) <= place.poor + most_spoiled &&
-           (place.may_cross || count_crossings(place) <= place.crossings);
+    const std::size_t may_be_poor = place.poor + most_spoiled;
+    return count_short(place, demands_, place.bad + 1) <= place.bad &&
+           count_short(place, not_poor, may_be_poor + 1) <= may_be_poor &&
+           (place.may_cross || count_crossings(place, place.crossings + 1) <= place.crossings);
   }
 
   bool may_slide(const Place& place) const {
@@ -239,11 +250,7 @@ class Mending {
     return !piece || !find_crossings(*piece, context_).empty();
   }
 
-  void restore(const Place& place) {
-    for (std::size_t k = 0; k < place.vertices.size(); ++k) {
-      search_.put(place.vertices[k], place.before[k]);
-    }
-  }
+  void restore(const Place& place) { search_.put(place.vertices, place.before); }
 
   /// Over the surface. Returns whether the place is mended.
   bool slide(const Place& place) {
@@ -280,19 +287,25 @@ class Mending {
   bool loosen(const Place& place, Who who) {
     constexpr int steps = 30;
     const float farthest = mean_edge(place);
+    std::vector<Index> leaving;
+    std::vector<std::size_t> where;  // in the place
+    for (std::size_t k = 0; k < place.vertices.size(); ++k) {
+      if (!may_leave(place, place.vertices[k], who)) continue;
+      leaving.push_back(place.vertices[k]);
+      where.push_back(k);
+    }
     for (int step = 0; step < steps && !is_mended(place); ++step) {
       effort_left_ -= static_cast<double>(place.faces.size());
-      std::vector<Vec3> next;
-      for (std::size_t k = 0; k < place.vertices.size(); ++k) {
-        const Index v = place.vertices[k];
-        const Vec3& start = place.before[k].position;
-        const Vec3 moved = 0.5f * (mesh_.positions[v] + search_.mean_neighbor(v)) - start;
-        next.push_back(start + moved * std::min(1.0f, farthest / std::max(moved.norm(), 1e-30f)));
+      std::vector<LocalSearch::Place> next;
+      for (std::size_t i = 0; i < leaving.size(); ++i) {
+        const auto& [start, seed] = place.before[where[i]];
+        const Vec3 towards =
+            0.5f * (mesh_.positions[leaving[i]] + search_.mean_neighbor(leaving[i]));
+        const Vec3 moved = towards - start;
+        next.push_back(
+            {start + moved * std::min(1.0f, farthest / std::max(moved.norm(), 1e-30f)), seed});
       }
-      for (std::size_t k = 0; k < place.vertices.size(); ++k) {
-        if (!may_leave(place, place.vertices[k], who)) continue;
-        search_.put(place.vertices[k], {next[k], place.before[k].seed});
-      }
+      search_.put(leaving, next);
     }
     return is_mended(place);
   }

@@ -320,7 +320,8 @@ void Smoother::hold_ends() {
 void Smoother::mend() {
   placement_.fit_lines();
   LocalSearch search(extraction_, around_, placement_, context_);
-  untangle(mesh_, around_, search, context_);
+  constexpr int sweeps = 30, sweeps_of_part = 8;
+  untangle(mesh_, around_, search, options_.is_part ? sweeps_of_part : sweeps, context_);
   mend_places(mesh_, around_, placement_, search, options_, context_);
 }
 

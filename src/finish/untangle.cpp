@@ -6,10 +6,9 @@
 
 namespace meshgrain {
 
-void untangle(const Mesh& mesh, const VertexFaces& around, LocalSearch& search,
+void untangle(const Mesh& mesh, const VertexFaces& around, LocalSearch& search, int sweeps,
               const Context& context) {
   constexpr float wanted = 0.75f;  // quality below which a face is looked at
-  constexpr int sweeps = 30;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     std::vector<Index> vertices;
     for (Index f = 0; f < mesh.faces.size(); ++f) {
