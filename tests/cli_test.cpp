@@ -364,6 +364,11 @@ TEST_F(Cli, WeldJoinsTorn) {
   }
   write_mesh(folder_ / "in.obj", torn);
   EXPECT_EQ(statistics("-f 300 --weld").euler, 2);
+  // So much is torn that nobody can have meant it.
+  const Run plain = run("in.obj -o out.obj -f 300");
+  EXPECT_NE(plain.err.find("note: merged"), std::string::npos) << plain.err;
+  EXPECT_EQ(statistics("-f 300 --quiet").euler, 2);
+  EXPECT_EQ(statistics("-f 300 --symmetry x --quiet").euler, 2);
 }
 
 TEST_F(Cli, NotesSayWhatWasMended) {

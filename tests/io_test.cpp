@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
@@ -18,6 +19,7 @@
 
 #include "mesh/weld.h"
 #include "meshgrain/error.h"
+#include "meshgrain/shapes.h"
 #include "util/platform.h"
 
 namespace meshgrain {
@@ -940,6 +942,34 @@ TEST(Weld, MergesNormalsAndKeepsTheFirstValue) {
   EXPECT_EQ(mesh.normals[2], Vec3(0, 1, 0));
   EXPECT_EQ(polygons(mesh), (Polygons{{0, 1, 2}}));
   EXPECT_EQ(weld(mesh), 0u);
+}
+
+TEST(Weld, TellsWhatIsTorn) {
+  EXPECT_FALSE(is_torn(sample_shape("cube", 0.3)));
+  EXPECT_FALSE(is_torn(Mesh{}));
+  // Six sides without common vertices are; a sheet with two sides, or a few pieces that touch along
+  // seams, are not.
+  Mesh sides, sheet, tiles;
+  const auto add = [](Mesh& mesh, std::array<Vec3, 4> corners) {
+    const auto first = static_cast<Index>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), corners.begin(), corners.end());
+    mesh.faces.push_back({first, first + 1, first + 2, first + 3});
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float side : {0.0f, 1.0f}) {
+      const Vec3 u = Vec3::Unit((axis + 1) % 3), v = Vec3::Unit((axis + 2) % 3);
+      const Vec3 at = side * Vec3::Unit(axis);
+      add(sides, {at, at + u, at + u + v, at + v});
+    }
+  }
+  add(sheet, {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)});
+  add(sheet, {Vec3(0, 1, 0), Vec3(1, 1, 0), Vec3(1, 0, 0), Vec3(0, 0, 0)});
+  for (const float x : {0.0f, 1.0f, 2.0f}) {
+    add(tiles, {Vec3(x, 0, 0), Vec3(x + 1, 0, 0), Vec3(x + 1, 1, 0), Vec3(x, 1, 0)});
+  }
+  EXPECT_TRUE(is_torn(sides));
+  EXPECT_FALSE(is_torn(sheet));
+  EXPECT_FALSE(is_torn(tiles));
 }
 
 TEST(Weld, KeepsManyDistinctVertices) {

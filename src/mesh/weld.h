@@ -13,6 +13,11 @@ namespace meshgrain {
 /// were merged into others.
 std::size_t weld(Mesh& mesh);
 
+/// Whether the faces of a mesh hardly share vertices although they meet, as some programs write
+/// them: fewer than half of its vertices have a place of their own. (Seams leave more than half,
+/// and so do the two sides of a sheet.) Costs nothing where faces do share vertices.
+bool is_torn(const Mesh& mesh);
+
 /// Numbers distinct positions in the order in which they first appear: a hash table with open
 /// addressing over the positions themselves.
 class DistinctPositions {

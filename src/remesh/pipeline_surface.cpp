@@ -12,6 +12,7 @@
 #include "meshgrain/error.h"
 #include "meshgrain/surface.h"
 #include "meshgrain/triangulate.h"
+#include "remesh/clean_input.h"
 #include "remesh/memory.h"
 #include "remesh/notes.h"
 #include "remesh/pipeline.h"
@@ -31,7 +32,7 @@ std::vector<std::uint8_t> picked(const std::vector<std::uint8_t>& flags,
 
 void Pipeline::clean_up(Mesh input) {
   stage_("clean", [&] {
-    result_.report.notes = describe(clean(input, context_));
+    result_.report.notes = clean_input(input, context_);
     frame_ = unit_frame(input);
     aim_at(options_.faces);
     enter(frame_, input);

@@ -6,11 +6,10 @@
 #include <utility>
 
 #include "mesh/border.h"
-#include "meshgrain/clean.h"
 #include "meshgrain/error.h"
 #include "meshgrain/surface.h"
 #include "meshgrain/triangulate.h"
-#include "remesh/notes.h"
+#include "remesh/clean_input.h"
 #include "remesh/take_out_noise.h"
 #include "remesh/target.h"
 #include "symmetry/fold_guides.h"
@@ -51,7 +50,7 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const Context& 
   if (input.is_point_cloud()) throw Error("symmetry needs a mesh: the input is a point cloud");
   if (options.faces == OutputFaces::hexagons) throw Error("hexagons cannot be made symmetric");
   const std::size_t vertices = input.positions.size(), faces = input.faces.size();
-  std::vector<std::string> notes = describe(clean(input, context));
+  std::vector<std::string> notes = clean_input(input, context);
   if (!(surface_area(input, context) > 0)) {
     throw Error("the input has no surface: all of its faces are degenerate");
   }

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "meshgrain/context.h"
+#include "meshgrain/mesh.h"
+
+namespace meshgrain {
+
+/// Takes out what carries no surface, and joins faces that only seem not to hang together (see
+/// is_torn()). Returns a line for each kind of what was done.
+std::vector<std::string> clean_input(Mesh& input, const Context& context);
+
+}  // namespace meshgrain
