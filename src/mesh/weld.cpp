@@ -79,8 +79,8 @@ std::size_t weld(Mesh& mesh) {
 
 bool is_torn(const Mesh& mesh) {
   const std::size_t count = mesh.positions.size();
-  // Around a vertex of a whole mesh are about six triangles or four quads, so that one of which
-  // fewer than half of the vertices are distinct has hardly half as many.
+  // Around a vertex of a whole mesh are about six triangles or four quads. If it stands for more
+  // than two vertices, these have fewer than three of them each: others need no table.
   if (mesh.faces.empty() || mesh.faces.corners().size() > 3 * count) return false;
   DistinctPositions distinct;
   for (const Vec3& p : mesh.positions) distinct.add(p);
