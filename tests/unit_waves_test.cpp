@@ -6,12 +6,14 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <queue>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "extract/cancel_singularities.h"
 #include "extract/unit_carrier.h"
 #include "made_graph.h"
 #include "made_lattice.h"
@@ -283,7 +285,7 @@ class Cancelling {
       : lattice_(lattice),
         radius_(radius),
         carrier_(lattice, Context()),
-        waves_(carrier_, radius) {}
+        waves_(UnitWaves(carrier_, radius, piece(0, 1))) {}
 
   void start_all() {
     for (const Index h : singular_triangles(lattice_)) start(h);
@@ -291,12 +293,38 @@ class Cancelling {
   }
   /// The same, a little farther each time.
   void start_all_slowly() {
-    waves_.set_reach(0.1f);
+    waves_->set_reach(0.1f);
     for (const Index h : singular_triangles(lattice_)) start(h);
-    for (float reach = 0.5f; !waves_.are_grown(); reach *= 1.5f) {
-      waves_.set_reach(reach);
+    for (float reach = 0.5f; !waves_->are_grown(); reach *= 1.5f) {
+      waves_->set_reach(reach);
       grow();
     }
+  }
+  /// The same, within pieces first.
+  void start_all_in_pieces(std::uint32_t pieces) {
+    std::vector<UnitWaves> waves;
+    std::uint32_t first = 0;  // of the waves of a piece
+    for (std::uint32_t k = 0; k < pieces; ++k) {
+      const UnitWaves::Piece triangles = piece(k, pieces);
+      waves.emplace_back(carrier_, radius_, triangles);
+      const std::size_t started = starts_.size();
+      for (const Index h : singular_triangles(lattice_)) {
+        const std::uint32_t t = UnitCarrier::triangle(carrier_.state(h, 0));
+        if (t < triangles.begin || t >= triangles.end) continue;
+        waves[k].start(h);
+        starts_.push_back(h);
+      }
+      std::vector<Meeting> meetings;
+      waves[k].grow(meetings, Context());
+      for (Meeting& meeting : meetings) {
+        meeting.wave += first;
+        if (meeting.other != no_index) meeting.other += first;
+        meetings_.push_back(meeting);
+      }
+      first += static_cast<std::uint32_t>(starts_.size() - started);
+    }
+    waves_.emplace(carrier_, radius_, std::move(waves), Context());
+    grow();
   }
   const std::vector<Index>& waves() const { return starts_; }
 
@@ -305,15 +333,16 @@ class Cancelling {
     while (true) {
       const Meeting* best = nullptr;
       for (const Meeting& meeting : meetings_) {
-        if (waves_.ends(meeting) && (best == nullptr || meeting.cost < best->cost)) best = &meeting;
+        if (waves_->ends(meeting) && (best == nullptr || meeting.cost < best->cost))
+          best = &meeting;
       }
       if (best == nullptr) return false;
       const Meeting meeting = *best;
       meetings_.erase(meetings_.begin() + (best - meetings_.data()));
-      const UnitWaves::Ends ends = *waves_.ends(meeting);
-      std::vector<State> steps = waves_.way(meeting.here);
+      const UnitWaves::Ends ends = *waves_->ends(meeting);
+      std::vector<State> steps = waves_->way(meeting.here);
       if (meeting.there != no_index) {
-        const std::vector<State> others = waves_.way(meeting.there);
+        const std::vector<State> others = waves_->way(meeting.there);
         if (others.empty()) continue;
         steps.insert(steps.end(), others.begin() + 1, others.end());
       }
@@ -330,22 +359,22 @@ class Cancelling {
   }
 
   void take_back(Index h) {
-    waves_.take_back(h);
+    waves_->take_back(h);
     std::erase(starts_, h);
   }
   void start(Index h) {
-    waves_.start(h);
+    waves_->start(h);
     starts_.push_back(h);
   }
 
   /// Until all that is known stands.
   void grow() {
     for (bool again = true; again;) {
-      waves_.grow(meetings_, Context());
+      waves_->grow(meetings_, Context());
       again = false;
       for (std::size_t k = meetings_.size(); k-- > 0;) {
-        if (waves_.ends(meetings_[k])) continue;
-        waves_.meet_again(meetings_[k]);
+        if (waves_->ends(meetings_[k])) continue;
+        waves_->meet_again(meetings_[k]);
         meetings_.erase(meetings_.begin() + static_cast<std::ptrdiff_t>(k));
         again = true;
       }
@@ -364,13 +393,13 @@ class Cancelling {
       if (!exists) continue;
       // Waves tell what has come to a state only to those who know what it costs.
       const auto ends =
-          waves_.ends({number, no_index, cost, 0, cost + fresh.ending(state), 0, no_index});
+          waves_->ends({number, no_index, cost, 0, cost + fresh.ending(state), 0, no_index});
       if (start == no_index) {
         wrong += !ends;
       } else if (!ends || ends->from != start) {
         ++wrong;
       } else {
-        expect_leads_there(waves_.way(number), cost);
+        expect_leads_there(waves_->way(number), cost);
       }
     }
     EXPECT_EQ(wrong, 0u);
@@ -378,10 +407,15 @@ class Cancelling {
   }
 
  private:
+  UnitWaves::Piece piece(std::uint32_t k, std::uint32_t pieces) const {
+    const auto all = static_cast<std::uint32_t>(carrier_.triangles());
+    return {all * k / pieces, all * (k + 1) / pieces};
+  }
+
   void expect_meetings(const Costs& expected) const {
     Costs told;
     for (const Meeting& meeting : meetings_) {
-      if (const auto ends = waves_.ends(meeting)) note(told, ends->from, ends->to, meeting.cost);
+      if (const auto ends = waves_->ends(meeting)) note(told, ends->from, ends->to, meeting.cost);
     }
     EXPECT_EQ(told.size(), expected.size());
     for (const auto& [pair, cost] : expected) {
@@ -425,7 +459,7 @@ class Cancelling {
     for (const State& step : steps) {
       const Index h = carrier_.halfedge(step);
       for (const Index side : {h, PolygonMap::twin(h)}) {
-        if (!lattice_.holes[side]) waves_.look_again(side);
+        if (!lattice_.holes[side]) waves_->look_again(side);
       }
     }
     return true;
@@ -435,7 +469,7 @@ class Cancelling {
   LatticeMesh& lattice_;
   float radius_;
   UnitCarrier carrier_;
-  UnitWaves waves_;
+  std::optional<UnitWaves> waves_;
   std::vector<Index> starts_;
   std::vector<Meeting> meetings_;
 };
@@ -458,6 +492,22 @@ TEST(UnitWaves, ComeAsFarInSteps) {
     Cancelling cancelling(c.lattice, radius);
     cancelling.start_all_slowly();
     cancelling.expect_fresh();
+  }
+}
+
+/// Also where a wave of another piece is nearer than one of its own.
+TEST(UnitWaves, GoOnOverTheBordersOfPieces) {
+  for (Case& c : with_creases()) {
+    for (const std::uint32_t pieces : {2u, 5u}) {
+      SCOPED_TRACE(c.name + ", pieces: " + std::to_string(pieces));
+      Cancelling cancelling(c.lattice, radius);
+      cancelling.start_all_in_pieces(pieces);
+      cancelling.expect_fresh();
+    }
+    SCOPED_TRACE(c.name + ", with changes");
+    Cancelling cancelling(c.lattice, radius);
+    cancelling.start_all_in_pieces(3);
+    while (cancelling.cancel_cheapest()) cancelling.expect_fresh();
   }
 }
 
@@ -504,6 +554,36 @@ TEST(UnitWaves, AreAfterChangesAsIfTheyHadJustStarted) {
       cancelling.expect_fresh();
     }
     EXPECT_GT(changes, 10);
+  }
+}
+
+/// With a low bound the mesh is cut into pieces. What lies on both sides of a border must
+/// go too.
+TEST(CancelPositionSingularities, LeavesNothingThatIsCheapEnough) {
+  constexpr CancellingCost most{2, 2};
+  std::size_t gone = 0;
+  for (const Case& c : closed_and_open()) {
+    SCOPED_TRACE(c.name);
+    LatticeMesh once = c.lattice;
+    cancel_position_singularities(once, most, Context(), 1);
+    gone += singular_triangles(c.lattice).size() - singular_triangles(once).size();
+    LatticeMesh twice = once;
+    cancel_position_singularities(twice, most, Context(), 1);
+    EXPECT_EQ(twice.jumps, once.jumps);
+  }
+  EXPECT_GT(gone, 10u);
+}
+
+TEST(CancelPositionSingularities, DoesNotDependOnThreads) {
+  for (const Case& c : with_creases()) {
+    SCOPED_TRACE(c.name);
+    LatticeMesh one = c.lattice;
+    cancel_position_singularities(one, {2, 2}, Context(1), 1);
+    for (const int threads : {2, 3, 8}) {
+      LatticeMesh many = c.lattice;
+      cancel_position_singularities(many, {2, 2}, Context(threads), 1);
+      EXPECT_EQ(many.jumps, one.jumps);
+    }
   }
 }
 

@@ -1,9 +1,11 @@
 #include "extract/cancel_singularities.h"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
+#include <cstdint>
 #include <queue>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "extract/unit_carrier.h"
@@ -12,18 +14,19 @@
 namespace meshgrain {
 namespace {
 
+constexpr int most_to_vanish = 2;  // irregular vertices, at one end
+
 /// Takes the cheapest way of all, then the cheapest of those that are left, and so on.
 class Cancelling {
  public:
-  Cancelling(LatticeMesh& lattice, const CancellingCost& most, const Context& context)
-      : lattice_(lattice),
-        most_(most),
-        context_(context),
-        carrier_(lattice, context),
-        waves_(carrier_, most_to_vanish * std::max(most.usual, most.where_graded)) {}
+  Cancelling(LatticeMesh& lattice, UnitCarrier& carrier, UnitWaves& waves,
+             const CancellingCost& most, const Context& context)
+      : lattice_(lattice), carrier_(carrier), waves_(waves), most_(most), context_(context) {}
 
-  void run() {
-    for (Index h = 0; h < lattice_.map.halfedges(); ++h) {
+  /// All within a piece, as if there were nothing beyond its border.
+  void run_within(const UnitWaves::Piece& piece) {
+    for (std::uint32_t t = piece.begin; t < piece.end; ++t) {
+      const Index h = carrier_.halfedge({4 * t, 0});
       if (lattice_.stands_for_triangle(h) && is_singular(h)) waves_.start(h);
     }
     // What is cheap goes before waves have come far: they need not grow over it again.
@@ -32,18 +35,22 @@ class Cancelling {
       waves_.set_reach(reach);
       find_meetings();
       const bool is_last = waves_.are_grown();
-      // A way that is not known yet costs at least twice as much, at both ends together.
-      take_ways(is_last ? std::numeric_limits<double>::infinity() : reach / most_to_vanish);
+      take_ways(is_last ? UnitCarrier::forbidden : reach);
       if (is_last && waves_.are_grown()) return;
     }
   }
 
- private:
-  static constexpr int most_to_vanish = 2;  // irregular vertices, at one end
+  /// What is left, where waves have grown already.
+  void run_on() {
+    find_meetings();
+    take_ways(UnitCarrier::forbidden);
+  }
 
-  /// Those that cost less.
-  void take_ways(double cost_for_each) {
-    while (!queue_.empty() && queue_.top().cost < cost_for_each) {
+ private:
+  /// Those that cost less than one by a way that is not known yet: by more than twice `unknown`, at
+  /// both ends together.
+  void take_ways(float unknown) {
+    while (!queue_.empty() && queue_.top().cost < unknown / most_to_vanish) {
       const UnitWaves::Meeting meeting = queue_.top().meeting;
       queue_.pop();
       if (const auto ends = waves_.ends(meeting)) {
@@ -144,18 +151,44 @@ class Cancelling {
   }
 
   LatticeMesh& lattice_;
+  UnitCarrier& carrier_;
+  UnitWaves& waves_;
   CancellingCost most_;
   const Context& context_;
-  UnitCarrier carrier_;
-  UnitWaves waves_;
   std::priority_queue<Place> queue_;
 };
+
+/// Triangles that follow each other lie together. A step costs about one, so that a piece is some
+/// times as wide as waves come far, and few reach its border.
+std::vector<UnitWaves::Piece> cut(std::size_t triangles, double radius, std::size_t at_once) {
+  constexpr double widths = 4;
+  const double least = std::max(static_cast<double>(at_once), std::pow(widths * radius, 2));
+  const auto count =
+      static_cast<std::size_t>(std::max(1.0, static_cast<double>(triangles) / least));
+  const auto begin = [&](std::size_t k) {
+    return static_cast<std::uint32_t>(triangles * k / count);
+  };
+  std::vector<UnitWaves::Piece> pieces;
+  for (std::size_t k = 0; k < count; ++k) pieces.push_back({begin(k), begin(k + 1)});
+  return pieces;
+}
 
 }  // namespace
 
 void cancel_position_singularities(LatticeMesh& lattice, const CancellingCost& most,
-                                   const Context& context) {
-  if (std::max(most.usual, most.where_graded) > 0) Cancelling(lattice, most, context).run();
+                                   const Context& context, std::size_t at_once) {
+  const double radius = most_to_vanish * std::max(most.usual, most.where_graded);
+  if (!(radius > 0)) return;
+  UnitCarrier carrier(lattice, context);
+  const std::vector<UnitWaves::Piece> pieces = cut(carrier.triangles(), radius, at_once);
+  std::vector<UnitWaves> waves;
+  for (const auto& piece : pieces) waves.emplace_back(carrier, radius, piece);
+  context.for_ranges(pieces.size(), 1, [&](std::size_t k, std::size_t) {
+    Cancelling(lattice, carrier, waves[k], most, context).run_within(pieces[k]);
+  });
+  if (pieces.size() == 1) return;
+  UnitWaves whole(carrier, radius, std::move(waves), context);
+  Cancelling(lattice, carrier, whole, most, context).run_on();
 }
 
 }  // namespace meshgrain

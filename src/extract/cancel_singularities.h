@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "extract/lattice_mesh.h"
 
 namespace meshgrain {
@@ -16,7 +18,10 @@ struct CancellingCost {
 /// from the real distance of the ends, and over the triangles passed of how much more is wrong with
 /// them (LatticeTriangle::misfit()). To cross an edge of a short feature line costs several times
 /// that.
+///
+/// A large mesh is cut into pieces of at least `at_once` triangles, so many that they fit into the
+/// caches: several are done at a time, and then the ways over their borders.
 void cancel_position_singularities(LatticeMesh& lattice, const CancellingCost& most,
-                                   const Context& context);
+                                   const Context& context, std::size_t at_once = 1 << 14);
 
 }  // namespace meshgrain

@@ -14,12 +14,25 @@ namespace meshgrain {
 /// from all of them over the lattice mesh, and where two meet is a way for them to cancel each
 /// other. Each place belongs to the wave that comes first, so that together they take no longer
 /// than one wave over everything (Dijkstra's algorithm from many sources).
+///
+/// Waves may be kept within a piece of the mesh, so that those of several pieces can grow, and be
+/// followed, at once: they look at nothing beyond its border.
 class UnitWaves {
  public:
   using State = UnitCarrier::State;
 
+  /// Triangles, as the carrier numbers them.
+  struct Piece {
+    std::uint32_t begin, end;
+  };
+
   /// `radius`: the cost at which waves end.
-  UnitWaves(const UnitCarrier& carrier, double radius);
+  UnitWaves(const UnitCarrier& carrier, double radius, const Piece& piece);
+
+  /// The same waves as one, from pieces that lie one behind the other. They go on over the borders
+  /// in between when they grow again.
+  UnitWaves(const UnitCarrier& carrier, double radius, std::vector<UnitWaves>&& pieces,
+            const Context& context);
 
   /// A place where a unit of one wave could meet one of another, or end for good.
   struct Meeting {
@@ -79,6 +92,13 @@ class UnitWaves {
     Origin origin() const { return static_cast<Origin>(packed % 4); }
   };
 
+  struct Wave {
+    Index start;                          // a halfedge
+    std::vector<std::uint32_t> places;    // states that were its own once
+    std::vector<Meeting> nearest;         // with each older wave
+    std::vector<std::uint32_t> contacts;  // states where it has met older ones, or could end
+  };
+
   /// A state that a wave could come to.
   struct Visit {
     std::uint32_t number;
@@ -93,7 +113,6 @@ class UnitWaves {
   template <typename Look>
   void make_steps(std::size_t count, const Look& look, std::vector<Meeting>& meetings,
                   const Context& context);
-  void sort_by_place();
   void get_ready(std::size_t place) const;
   void go_on(std::uint32_t number, Steps& steps) const;
   bool has_contact(const State& in) const;
@@ -105,24 +124,34 @@ class UnitWaves {
   void step_from_start(const State& out, std::vector<Visit>& visits) const;
   void visit(const Visit& visit);
   void put_in_line(const BucketQueue::Entry& entry);
+  bool is_inside(std::uint32_t number) const { return number - first_ < labels_.size(); }
+  const Label& label_at(std::uint32_t number) const {
+    return is_inside(number) ? labels_[number - first_] : unreached_;
+  }
+  Label& own_label(std::uint32_t number) { return labels_[number - first_]; }
+  std::uint32_t& wave_from(std::uint32_t triangle) { return wave_[triangle - piece_.begin]; }
+  std::uint32_t wave_from(std::uint32_t triangle) const { return wave_[triangle - piece_.begin]; }
+  void take_over(UnitWaves&& piece, std::uint32_t first_wave);
+
   void forget(std::uint32_t number);
   void forget_beyond(std::uint32_t number);
   void come_back_to(std::uint32_t number, std::vector<Visit>& visits) const;
 
   const UnitCarrier& carrier_;
   float radius_, reach_;
-  std::vector<Label> labels_;                       // of each state
-  std::vector<std::uint32_t> wave_;                 // of each triangle: the one that starts there
-  std::vector<Index> starts_;                       // of each wave: a halfedge
-  std::vector<std::vector<std::uint32_t>> places_;  // of each wave: states that were its own once
-  std::vector<std::uint32_t> forgotten_;            // states that waves could come back to
-  std::vector<std::vector<Meeting>> nearest_;       // of each wave: with each older one
-  // Of each wave: states where it has met older ones, or could end.
-  std::vector<std::vector<std::uint32_t>> contacts_;
+  Piece piece_;
+  std::uint32_t first_;              // state
+  Label unreached_;                  // of all beyond the border
+  std::vector<Label> labels_;        // of each state
+  std::vector<std::uint32_t> wave_;  // of each triangle: the one that starts there
+  std::vector<Wave> waves_;
+  std::vector<std::uint32_t> forgotten_;          // states that waves could come back to
+  std::vector<std::uint32_t> beyond_border_;      // states that they could come to from here
   std::vector<std::uint32_t> unmet_;              // waves that must look at their contacts again
   std::vector<BucketQueue::Entry> beyond_reach_;  // states
   BucketQueue queue_{bucket};
-  std::vector<BucketQueue::Entry> batch_, sorted_;
+  std::vector<BucketQueue::Entry> batch_;
+  std::vector<Steps> steps_;  // kept for their memory
 };
 
 }  // namespace meshgrain

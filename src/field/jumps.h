@@ -15,6 +15,7 @@ struct Jump {
   std::array<int, 2> t{0, 0};
 
   bool is_zero() const { return t[0] == 0 && t[1] == 0; }
+  bool operator==(const Jump&) const = default;
 };
 
 /// Whether a jump leads to a neighbouring lattice point, along an edge of the output.
