@@ -66,15 +66,15 @@ void drop_fragments(Extraction& extraction, const Graph& graph) {
 }
 
 /// The local changes that leave fewer irregular faces and vertices.
-void make_regular(FaceRepair& repair, int posy) {
+void make_regular(FaceRepair& repair, int posy, const Context& context) {
   if (posy == 4) {
-    repair.improve_edges();
+    repair.improve_edges(context);
     repair.close_quads();
     repair.open_vertices();
-    repair.improve_edges();
+    repair.improve_edges(context);
     repair.remove_doublets();
   } else {
-    repair.flip_edges();
+    repair.flip_edges(context);
   }
 }
 
@@ -92,7 +92,7 @@ Extraction extract_from_graph(const Graph& graph, const OrientationField& orient
   repair.find_holes(mark(clusters.edges, clusters.border), clusters.on_border,
                     options.largest_filled_gap);
   repair.split_large();
-  make_regular(repair, position.posy);
+  make_regular(repair, position.posy, context);
   std::vector<Index> vertex;
   Extraction result = collect_faces(map, repair, clusters, vertex);
   drop_fragments(result, graph);
@@ -173,10 +173,10 @@ Extraction extract_from_mesh(const Graph& graph, const OrientationField& orienta
                     std::move(lattice.lines));
   if (position.posy == 4) repair.remove_diagonals(lattice.jumps);
   repair.part_straight_angles();
-  make_regular(repair, position.posy);
+  make_regular(repair, position.posy, context);
   if (options.only_quads) {
     pair_odd_faces(lattice.map, repair);
-    make_regular(repair, position.posy);
+    make_regular(repair, position.posy, context);
   }
   std::vector<Index> vertex;
   Extraction result = collect_faces(lattice.map, repair, lattice.clusters, vertex);

@@ -77,8 +77,9 @@ bool FaceRepair::is_straight(Index to, Index from, const Vec3& normal) const {
 }
 
 bool FaceRepair::is_last_rung(Index h) const {
-  const Index t = PolygonMap::twin(h);
-  return is_straight(map_.next(t), map_.prev(h), face_normal(h) + face_normal(t));
+  const Index t = PolygonMap::twin(h), to = map_.next(t), from = map_.prev(h);
+  if (line(to) == no_index || line(from) == no_index) return false;  // as nearly everywhere
+  return is_straight(to, from, face_normal(h) + face_normal(t));
 }
 
 void FaceRepair::part_straight_angles() {

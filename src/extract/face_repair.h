@@ -10,6 +10,7 @@
 #include "extract/link_condition.h"
 #include "extract/polygon_map.h"
 #include "field/jumps.h"
+#include "meshgrain/context.h"
 
 namespace meshgrain {
 
@@ -52,7 +53,7 @@ class FaceRepair {
   /// Quads: takes edges away, or turns them within the two faces beside them, as long as that
   /// leaves fewer irregular faces and vertices, the greatest gain first. So pairs of triangles
   /// become quads, and the long side of a flat triangle makes way for a T-junction.
-  void improve_edges();
+  void improve_edges(const Context& context);
 
   /// Closes quads by merging two opposite corners, as long as that leaves fewer irregular vertices.
   void close_quads();
@@ -95,10 +96,10 @@ class FaceRepair {
   // Triangles (triangle_repair.cpp).
 
   /// Turns the edge between two triangles as long as that leaves fewer irregular vertices.
-  void flip_edges();
+  void flip_edges(const Context& context);
   /// Contracts `count` edges, each where that leaves the fewest irregular vertices. Returns how
   /// many it could.
-  std::size_t contract_edges(std::size_t count);
+  std::size_t contract_edges(std::size_t count, const Context& context);
 
   /// Splits faces with more corners than the symmetry allows along their best chords. A face of a
   /// 6-PoSy that no chord can split, as its corners are joined outside of it already, gets a vertex

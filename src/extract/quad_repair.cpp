@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "extract/face_repair.h"
+#include "util/collect.h"
 
 namespace meshgrain {
 namespace {
@@ -90,11 +91,12 @@ FaceRepair::EdgeChange FaceRepair::best_change(Index h) const {
   const int n = a + b - 2;
   if (n > 7) return best;
   const Index ends[2] = {map_.origin(h), map_.origin(t)};
-  for (const Index v : ends) {
-    if (static_cast<int>(map_.valence(v)) < regular_valence(clusters_.on_border[v])) return best;
-  }
   int gain_of_removal = (a != 4) + (b != 4);
-  for (const Index v : ends) gain_of_removal += is_irregular(v, 0) - is_irregular(v, -1);
+  for (const Index v : ends) {
+    const int excess = static_cast<int>(map_.valence(v)) - regular_valence(clusters_.on_border[v]);
+    if (excess < 0) return best;
+    gain_of_removal += (excess != 0) - (excess != 1);
+  }
   // Another edge in its place can gain one at each of its ends: most are done with here.
   if (gain_of_removal <= -2) return best;
 
@@ -144,13 +146,15 @@ void FaceRepair::apply(const EdgeChange& change) {
   add_edge(halfedges[change.from], halfedges[change.to]);
 }
 
-void FaceRepair::improve_edges() {
+void FaceRepair::improve_edges(const Context& context) {
   // Every change lowers a count, so this ends by itself.
   for (;;) {
-    std::vector<EdgeChange> changes;
-    for (Index h = 0; h < map_.halfedges(); h += 2) {
-      if (const EdgeChange change = best_change(h); change.gain > 0) changes.push_back(change);
-    }
+    const auto look = [&](std::size_t begin, std::size_t end, std::vector<EdgeChange>& out) {
+      for (auto e = static_cast<Index>(begin); e < end; ++e) {
+        if (const EdgeChange change = best_change(2 * e); change.gain > 0) out.push_back(change);
+      }
+    };
+    std::vector<EdgeChange> changes = collect<EdgeChange>(map_.halfedges() / 2, look, context);
     if (changes.empty()) return;
     std::sort(changes.begin(), changes.end(), [](const EdgeChange& x, const EdgeChange& y) {
       return std::tie(y.gain, x.cost, x.h) < std::tie(x.gain, y.cost, y.h);

@@ -14,7 +14,8 @@ std::size_t reduce_faces(Extraction& extraction, int posy, std::size_t count,
   if (parts.map.vertices() != extraction.mesh.positions.size()) return 0;
   FaceRepair repair(parts.map, parts.clusters, posy, std::move(parts.holes),
                     std::move(parts.lines));
-  const std::size_t done = posy == 4 ? repair.close_quads(count) : repair.contract_edges(count);
+  const std::size_t done =
+      posy == 4 ? repair.close_quads(count) : repair.contract_edges(count, context);
   std::vector<Index> vertex;
   if (done > 0) extraction = collect_faces(parts.map, repair, parts.clusters, vertex);
   return done;

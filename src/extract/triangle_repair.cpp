@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "extract/face_repair.h"
+#include "util/collect.h"
 
 namespace meshgrain {
 
@@ -50,13 +51,16 @@ int FaceRepair::flip_gain(Index h) const {
   return convex ? gain : 0;
 }
 
-void FaceRepair::flip_edges() {
+void FaceRepair::flip_edges(const Context& context) {
   for (bool again = true; again;) {
     again = false;
-    std::vector<std::pair<int, Index>> candidates;
-    for (Index h = 0; h < map_.halfedges(); h += 2) {
-      if (const int gain = flip_gain(h); gain > 0) candidates.emplace_back(-gain, h);
-    }
+    using Candidate = std::pair<int, Index>;
+    const auto look = [&](std::size_t begin, std::size_t end, std::vector<Candidate>& out) {
+      for (auto e = static_cast<Index>(begin); e < end; ++e) {
+        if (const int gain = flip_gain(2 * e); gain > 0) out.emplace_back(-gain, 2 * e);
+      }
+    };
+    std::vector<Candidate> candidates = collect<Candidate>(map_.halfedges() / 2, look, context);
     std::sort(candidates.begin(), candidates.end());
     for (const auto& [loss, h] : candidates) {
       if (flip_gain(h) != -loss) continue;
@@ -92,7 +96,7 @@ std::optional<int> FaceRepair::contraction_gain(Index h) {
   return gain - irregular(a, static_cast<int>(map_.valence(b)) - 4);
 }
 
-std::size_t FaceRepair::contract_edges(std::size_t count) {
+std::size_t FaceRepair::contract_edges(std::size_t count, const Context& context) {
   const std::size_t done = reduce(
       count, [&](Index h) { return contraction_gain(h); }, [&](Index h) { return map_.target(h); },
       [&](Index h) {
@@ -102,7 +106,7 @@ std::size_t FaceRepair::contract_edges(std::size_t count) {
         }
         contract(h);
       });
-  flip_edges();
+  flip_edges(context);
   return done;
 }
 
