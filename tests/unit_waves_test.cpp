@@ -285,7 +285,8 @@ class Cancelling {
       : lattice_(lattice),
         radius_(radius),
         carrier_(lattice, Context()),
-        waves_(UnitWaves(carrier_, radius, piece(0, 1))) {}
+        labels_(carrier_.states()),
+        waves_(UnitWaves(carrier_, radius, labels_, piece(0, 1))) {}
 
   void start_all() {
     for (const Index h : singular_triangles(lattice_)) start(h);
@@ -306,7 +307,7 @@ class Cancelling {
     std::uint32_t first = 0;  // of the waves of a piece
     for (std::uint32_t k = 0; k < pieces; ++k) {
       const UnitWaves::Piece triangles = piece(k, pieces);
-      waves.emplace_back(carrier_, radius_, triangles);
+      waves.emplace_back(carrier_, radius_, labels_, triangles);
       const std::size_t started = starts_.size();
       for (const Index h : singular_triangles(lattice_)) {
         const std::uint32_t t = UnitCarrier::triangle(carrier_.state(h, 0));
@@ -323,7 +324,7 @@ class Cancelling {
       }
       first += static_cast<std::uint32_t>(starts_.size() - started);
     }
-    waves_.emplace(carrier_, radius_, std::move(waves), Context());
+    waves_.emplace(std::move(waves), Context());
     grow();
   }
   const std::vector<Index>& waves() const { return starts_; }
@@ -469,6 +470,7 @@ class Cancelling {
   LatticeMesh& lattice_;
   float radius_;
   UnitCarrier carrier_;
+  std::vector<UnitWaves::Label> labels_;
   std::optional<UnitWaves> waves_;
   std::vector<Index> starts_;
   std::vector<Meeting> meetings_;

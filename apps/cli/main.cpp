@@ -53,6 +53,7 @@ int fail(int status, std::string message) {
 int main(int argc, char** argv) {
   constexpr int failure = 1;
   constexpr int wrong_usage = 2;
+  keep_freed_memory();
   try {
     run(argc, argv);
     if (std::fflush(stdout) != 0) return fail(failure, "the output could not be written");

@@ -10,6 +10,11 @@ namespace meshgrain {
 /// The version of the library, as "0.1.0".
 std::string_view version();
 
+/// For a program that does nothing but to remesh, at its start: memory that is freed is kept for
+/// what is allocated next, which saves up to a tenth of the time. Does nothing where the system has
+/// no way to ask for it.
+void keep_freed_memory();
+
 /// The most memory in bytes that the process has had resident so far, or 0 if unknown.
 std::size_t peak_memory();
 

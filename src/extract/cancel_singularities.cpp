@@ -181,13 +181,14 @@ void cancel_position_singularities(LatticeMesh& lattice, const CancellingCost& m
   if (!(radius > 0)) return;
   UnitCarrier carrier(lattice, context);
   const std::vector<UnitWaves::Piece> pieces = cut(carrier.triangles(), radius, at_once);
+  std::vector<UnitWaves::Label> labels(carrier.states());
   std::vector<UnitWaves> waves;
-  for (const auto& piece : pieces) waves.emplace_back(carrier, radius, piece);
+  for (const auto& piece : pieces) waves.emplace_back(carrier, radius, labels, piece);
   context.for_ranges(pieces.size(), 1, [&](std::size_t k, std::size_t) {
     Cancelling(lattice, carrier, waves[k], most, context).run_within(pieces[k]);
   });
   if (pieces.size() == 1) return;
-  UnitWaves whole(carrier, radius, std::move(waves), context);
+  UnitWaves whole(std::move(waves), context);
   Cancelling(lattice, carrier, whole, most, context).run_on();
 }
 

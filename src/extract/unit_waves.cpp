@@ -9,27 +9,29 @@
 
 namespace meshgrain {
 
-UnitWaves::UnitWaves(const UnitCarrier& carrier, double radius, const Piece& piece)
+UnitWaves::UnitWaves(const UnitCarrier& carrier, double radius, std::vector<Label>& labels,
+                     const Piece& piece)
     : carrier_(carrier),
       radius_(static_cast<float>(radius)),
       reach_(radius_),
       piece_(piece),
-      first_(carrier.number({4 * piece.begin, 0})),
-      labels_(carrier.number({4 * piece.end, 0}) - first_),
+      labels_(labels),
       wave_(piece.end - piece.begin, no_index) {}
 
-UnitWaves::UnitWaves(const UnitCarrier& carrier, double radius, std::vector<UnitWaves>&& pieces,
-                     const Context& context)
-    : UnitWaves(carrier, radius, {pieces.front().piece_.begin, pieces.back().piece_.end}) {
+UnitWaves::UnitWaves(std::vector<UnitWaves>&& pieces, const Context& context)
+    : UnitWaves(pieces.front().carrier_, pieces.front().radius_, pieces.front().labels_,
+                {pieces.front().piece_.begin, pieces.back().piece_.end}) {
   std::vector<std::uint32_t> first_waves{0};
   for (const UnitWaves& piece : pieces) {
     first_waves.push_back(first_waves.back() + static_cast<std::uint32_t>(piece.waves_.size()));
   }
   context.for_ranges(pieces.size(), 1, [&](std::size_t k, std::size_t) {
-    for (Label& label : pieces[k].labels_) {
+    const auto [begin, end] = pieces[k].piece_;
+    const std::uint32_t last = carrier_.number({4 * end, 0});
+    for (std::uint32_t number = carrier_.number({4 * begin, 0}); number < last; ++number) {
+      Label& label = labels_[number];
       label = Label::of(label.cost, label.wave() + first_waves[k], label.origin());
     }
-    std::ranges::copy(pieces[k].labels_, labels_.begin() + (pieces[k].first_ - first_));
   });
   for (std::size_t k = 0; k < pieces.size(); ++k) take_over(std::move(pieces[k]), first_waves[k]);
 }
@@ -89,7 +91,7 @@ void UnitWaves::visit(const Visit& visit) {
     beyond_border_.push_back(number);
     return;
   }
-  Label& label = own_label(number);
+  Label& label = labels_[number];
   if (label.cost <= next.cost) return;
   const bool is_new = label.cost == never || label.wave() != next.wave();
   if (is_new) waves_[next.wave()].places.push_back(number);
@@ -281,7 +283,7 @@ void UnitWaves::meet_at_contacts(std::vector<Meeting>& meetings) {
 
 void UnitWaves::forget(std::uint32_t number) {
   if (label_at(number).cost == never) return;
-  own_label(number).cost = never;
+  labels_[number].cost = never;
   forgotten_.push_back(number);
 }
 

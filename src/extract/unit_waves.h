@@ -21,18 +21,34 @@ class UnitWaves {
  public:
   using State = UnitCarrier::State;
 
+  enum Origin : std::uint32_t { previous_edge, edge_before, nowhere };
+  static constexpr float never = std::numeric_limits<float>::infinity();
+
+  /// What came to a state, of which wave, from where, and at what cost.
+  struct Label {
+    float cost = never;
+    std::uint32_t packed = 0;
+
+    static Label of(float cost, std::uint32_t wave, Origin origin) {
+      return {cost, 4 * wave + origin};
+    }
+    std::uint32_t wave() const { return packed / 4; }
+    Origin origin() const { return static_cast<Origin>(packed % 4); }
+  };
+
   /// Triangles, as the carrier numbers them.
   struct Piece {
     std::uint32_t begin, end;
   };
 
-  /// `radius`: the cost at which waves end.
-  UnitWaves(const UnitCarrier& carrier, double radius, const Piece& piece);
+  /// `radius`: the cost at which waves end. `labels`: of all states of the carrier, those of the
+  /// piece still unreached; they must outlive this.
+  UnitWaves(const UnitCarrier& carrier, double radius, std::vector<Label>& labels,
+            const Piece& piece);
 
-  /// The same waves as one, from pieces that lie one behind the other. They go on over the borders
-  /// in between when they grow again.
-  UnitWaves(const UnitCarrier& carrier, double radius, std::vector<UnitWaves>&& pieces,
-            const Context& context);
+  /// The waves of pieces that lie one behind the other, together. They go on over the borders in
+  /// between when they grow again.
+  UnitWaves(std::vector<UnitWaves>&& pieces, const Context& context);
 
   /// A place where a unit of one wave could meet one of another, or end for good.
   struct Meeting {
@@ -77,20 +93,7 @@ class UnitWaves {
   std::vector<State> way(std::uint32_t number) const;
 
  private:
-  enum Origin : std::uint32_t { previous_edge, edge_before, nowhere };
   static constexpr float bucket = 0.5f;  // of costs that are looked at together
-  static constexpr float never = std::numeric_limits<float>::infinity();
-
-  struct Label {
-    float cost = never;
-    std::uint32_t packed = 0;
-
-    static Label of(float cost, std::uint32_t wave, Origin origin) {
-      return {cost, 4 * wave + origin};
-    }
-    std::uint32_t wave() const { return packed / 4; }
-    Origin origin() const { return static_cast<Origin>(packed % 4); }
-  };
 
   struct Wave {
     Index start;                          // a halfedge
@@ -124,11 +127,13 @@ class UnitWaves {
   void step_from_start(const State& out, std::vector<Visit>& visits) const;
   void visit(const Visit& visit);
   void put_in_line(const BucketQueue::Entry& entry);
-  bool is_inside(std::uint32_t number) const { return number - first_ < labels_.size(); }
-  const Label& label_at(std::uint32_t number) const {
-    return is_inside(number) ? labels_[number - first_] : unreached_;
+  bool is_inside(std::uint32_t number) const {
+    const std::uint32_t triangle = UnitCarrier::triangle(carrier_.state(number));
+    return piece_.begin <= triangle && triangle < piece_.end;
   }
-  Label& own_label(std::uint32_t number) { return labels_[number - first_]; }
+  const Label& label_at(std::uint32_t number) const {
+    return is_inside(number) ? labels_[number] : unreached_;
+  }
   std::uint32_t& wave_from(std::uint32_t triangle) { return wave_[triangle - piece_.begin]; }
   std::uint32_t wave_from(std::uint32_t triangle) const { return wave_[triangle - piece_.begin]; }
   void take_over(UnitWaves&& piece, std::uint32_t first_wave);
@@ -140,9 +145,8 @@ class UnitWaves {
   const UnitCarrier& carrier_;
   float radius_, reach_;
   Piece piece_;
-  std::uint32_t first_;              // state
+  std::vector<Label>& labels_;       // of each state
   Label unreached_;                  // of all beyond the border
-  std::vector<Label> labels_;        // of each state
   std::vector<std::uint32_t> wave_;  // of each triangle: the one that starts there
   std::vector<Wave> waves_;
   std::vector<std::uint32_t> forgotten_;          // states that waves could come back to

@@ -18,6 +18,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #endif
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 namespace meshgrain::platform {
 namespace {
@@ -36,6 +39,14 @@ std::string read_whole(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  constexpr int large = 1 << 30;  // bytes
+  ::mallopt(M_MMAP_THRESHOLD, large);
+  ::mallopt(M_TRIM_THRESHOLD, large);
+#endif
+}
 
 #ifdef MESHGRAIN_POSIX
 

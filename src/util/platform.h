@@ -31,6 +31,10 @@ class MappedFile {
   bool mapped_ = false;
 };
 
+/// Keeps memory that is freed for what is allocated next, where the system's allocator would return
+/// it: a program that takes one large array after the other waits long for new pages.
+void keep_freed_memory();
+
 /// The most memory in bytes that the process has had resident so far, or 0 if unknown.
 std::size_t peak_memory();
 

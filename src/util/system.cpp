@@ -23,6 +23,9 @@ std::string_view version() {
   return MESHGRAIN_VERSION;
 }
 
+void keep_freed_memory() {
+  platform::keep_freed_memory();
+}
 std::size_t peak_memory() {
   return platform::peak_memory();
 }
