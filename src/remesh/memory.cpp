@@ -16,16 +16,16 @@ namespace meshgrain {
 namespace {
 
 // In bytes, fitted to measured runs (Cli.MemoryIsEstimatedFromAbove holds them to it).
-constexpr double program = 11 << 20, thread = 1 << 20;
+constexpr double program = 13 << 20, thread = 1 << 20;
 constexpr double node_of_vertex = 330, node_of_face = 260;  // with its part of all levels
 constexpr double coarse_levels = 60;  // of the former: they go where no count was asked for
 // More, in cells of so many vertices, many of which collapse one by one.
 constexpr double node_of_large_cell = 130, large_cell = 500;
 constexpr double point = 130, neighbor = 32;  // of a cloud, each of its neighbours
 constexpr double input_vertex = 12, input_corner = 4;
-constexpr double dense_vertex = 80;  // more, until coarsen() has passed
+constexpr double dense_vertex = 90;  // more, until coarsen() has passed
 constexpr double written_corner = 65;
-constexpr double far_waves = 75;    // more, where singularities are cancelled however far apart
+constexpr double far_waves = 50;    // more, where singularities are cancelled however far apart
 constexpr double given_node = 250;  // of RemeshOptions::fields
 
 /// Into how many triangles subdivide() splits one with edges of these lengths: each edge is halved
