@@ -63,7 +63,7 @@ void UnitWaves::take_over(UnitWaves&& piece, std::uint32_t first_wave) {
 void UnitWaves::start(Index h) {
   const State first = carrier_.state(h, 0);
   wave_from(UnitCarrier::triangle(first)) = static_cast<std::uint32_t>(waves_.size());
-  waves_.push_back({.start = h});
+  waves_.emplace_back().start = h;
   std::vector<Visit> visits;
   for (int unit = 0; unit < carrier_.units(); ++unit) {
     State out = carrier_.state(h, unit);

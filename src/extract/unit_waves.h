@@ -96,7 +96,7 @@ class UnitWaves {
   static constexpr float bucket = 0.5f;  // of costs that are looked at together
 
   struct Wave {
-    Index start;                          // a halfedge
+    Index start = no_index;               // a halfedge
     std::vector<std::uint32_t> places;    // states that were its own once
     std::vector<Meeting> nearest;         // with each older wave
     std::vector<std::uint32_t> contacts;  // states where it has met older ones, or could end

@@ -428,7 +428,7 @@ void Pipeline::try_coarser_lattice() {
 
 void Pipeline::aim_at(OutputFaces lattice_faces) {
   lattice_faces_ = lattice_faces;
-  target_ = Target(wanted_, lattice_faces, result_.report.input_vertices, frame_.scale);
+  target_ = Target(wanted_, lattice_faces, clean_vertices_, frame_.scale);
 }
 
 void Pipeline::change_target(const RemeshOptions& options) {

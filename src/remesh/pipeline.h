@@ -141,8 +141,9 @@ class Pipeline {
   // What the cells of the lattice become: OutputFaces::quads are four each. Where they are to be
   // quads themselves, it is quad_dominant, and few of the others are left for extraction to mend.
   OutputFaces lattice_faces_ = OutputFaces::quads;
-  bool has_thin_limbs_ = false;  // for its faces, see is_coarse_for_bends()
-  RemeshOptions wanted_;         // what the target goes by
+  bool has_thin_limbs_ = false;     // for its faces, see is_coarse_for_bends()
+  RemeshOptions wanted_;            // what the target goes by
+  std::size_t clean_vertices_ = 0;  // of the input, without what clean_up() takes out
   bool is_sharpened_ = false;
   bool is_coarsened_ = false;  // its creases are marked since then, and
   bool had_marks_ = false;     // others were before

@@ -33,6 +33,7 @@ std::vector<std::uint8_t> picked(const std::vector<std::uint8_t>& flags,
 void Pipeline::clean_up(Mesh input) {
   stage_("clean", [&] {
     result_.report.notes = clean_input(input, context_);
+    clean_vertices_ = input.positions.size();
     frame_ = unit_frame(input);
     aim_at(options_.faces);
     enter(frame_, input);

@@ -58,7 +58,7 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const Context& 
   options.symmetry = {};
   options.memory_limit = 0;  // has been looked at for the whole
   if (options.edge_length == 0 && options.face_count == 0 && options.vertex_count == 0) {
-    options.vertex_count = std::max<std::size_t>(vertices / 16, 1);
+    options.vertex_count = std::max<std::size_t>(input.positions.size() / 16, 1);
   }
   if (!planes.empty()) {
     input = triangulate(input);
