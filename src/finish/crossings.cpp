@@ -27,23 +27,38 @@ struct Triangle {
 };
 
 /// The triangles of a face: of a quad, those on either side of both diagonals.
-std::vector<Triangle> triangles_of(const Mesh& mesh, Index f) {
-  const std::span<const Index> face = mesh.faces[f];
-  std::vector<Triangle> triangles;
-  triangles.reserve(face.size());
-  const auto add = [&](const Corners& corners) {
-    Triangle& t = triangles.emplace_back();
-    t.corners = corners;
-    for (int k = 0; k < 3; ++k) t.points[k] = mesh.positions[corners[k]].cast<double>();
-    t.normal = (t.points[1] - t.points[0]).cross(t.points[2] - t.points[0]);
-  };
-  for (std::size_t k = 2; k < face.size(); ++k) add({face[0], face[k - 1], face[k]});
-  if (face.size() == 4) {
-    add({face[1], face[2], face[3]});
-    add({face[1], face[3], face[0]});
+class FaceTriangles {
+ public:
+  FaceTriangles(const Mesh& mesh, Index f) {
+    const std::span<const Index> face = mesh.faces[f];
+    fan_ = face.size() - 2;
+    const std::size_t count = face.size() == 4 ? 4 : fan_;
+    if (count > few_.size()) many_.resize(count);
+    all_ = many_.empty() ? std::span(few_).first(count) : std::span(many_);
+    const auto set = [&](std::size_t which, const Corners& corners) {
+      Triangle& t = all_[which];
+      t.corners = corners;
+      for (int k = 0; k < 3; ++k) t.points[k] = mesh.positions[corners[k]].cast<double>();
+      t.normal = (t.points[1] - t.points[0]).cross(t.points[2] - t.points[0]);
+    };
+    for (std::size_t k = 0; k < fan_; ++k) set(k, {face[0], face[k + 1], face[k + 2]});
+    if (count == fan_) return;
+    set(2, {face[1], face[2], face[3]});
+    set(3, {face[1], face[3], face[0]});
   }
-  return triangles;
-}
+  FaceTriangles(const FaceTriangles&) = delete;
+  FaceTriangles& operator=(const FaceTriangles&) = delete;
+
+  std::span<const Triangle> all() const { return all_; }
+  /// Those that have all of its corners already.
+  std::span<const Triangle> fan() const { return all().first(fan_); }
+
+ private:
+  std::array<Triangle, 4> few_;
+  std::vector<Triangle> many_;  // where there are more
+  std::span<Triangle> all_;
+  std::size_t fan_;
+};
 
 // Faces are taken a little larger than they are, so that what only touches counts too.
 constexpr double margin = 1e-3;
@@ -56,11 +71,26 @@ Heights heights(const Triangle& triangle, const Triangle& plane) {
   return result;
 }
 
-/// Whether a triangle lies on one side.
-bool beside(const Heights& heights) {
-  const auto [low, high] = std::minmax({heights[0], heights[1], heights[2]});
+/// Whether what has heights between these lies on one side.
+bool beside(double low, double high) {
   const double more = margin * (high - low);
   return low - more > 0 || high + more < 0;
+}
+bool beside(const Heights& heights) {
+  const auto [low, high] = std::minmax({heights[0], heights[1], heights[2]});
+  return beside(low, high);
+}
+
+/// Whether a whole face lies on one side of a triangle of another.
+bool beside(const FaceTriangles& face, const Triangle& plane) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Triangle& triangle : face.fan()) {
+    for (const double height : heights(triangle, plane)) {
+      low = std::min(low, height);
+      high = std::max(high, height);
+    }
+  }
+  return beside(low, high);
 }
 
 /// How far the nearer end of an edge of one triangle lies beyond another that it passes through,
@@ -152,16 +182,20 @@ bool are_parted(const Mesh& mesh, std::span<const Index> f, std::span<const Inde
   return count == 0 ? g_low - f_high > clear : f_high < -clear && g_low > clear;
 }
 
-/// The same as penetration() where the boxes of the faces meet.
+}  // namespace
+
 double penetration_of_near(const Mesh& mesh, Index f, Index g) {
   if (are_parted(mesh, mesh.faces[f], mesh.faces[g])) return 0;
-  const std::vector<Triangle> own = triangles_of(mesh, f), other = triangles_of(mesh, g);
+  const FaceTriangles own(mesh, f), other(mesh, g);
   double sum = 0;
-  for (const Triangle& t : own) {
-    for (const Triangle& u : other) sum += penetration(t, u);
+  for (const Triangle& t : own.all()) {
+    if (beside(other, t)) continue;
+    for (const Triangle& u : other.all()) sum += penetration(t, u);
   }
   return sum;
 }
+
+namespace {
 
 /// The faces of a mesh by the cells of a grid that their boxes touch.
 class FaceGrid {

@@ -225,8 +225,8 @@ float LocalSearch::crossing(Index f, std::span<const Rival> near, float limit) c
   const Eigen::AlignedBox3f box = face_box(mesh_, f);
   float sum = 0;
   for (const auto& [g, near_box] : near) {
-    if (near_box && !box.intersects(*near_box)) continue;
-    const double deep = penetration(mesh_, f, g);
+    if (f == g || !box.intersects(near_box ? *near_box : face_box(mesh_, g))) continue;
+    const double deep = penetration_of_near(mesh_, f, g);
     if (deep > 0) sum += 1 + 20 * static_cast<float>(deep) / std::sqrt(mean_area_);
     if (sum >= limit) break;
   }
