@@ -324,7 +324,7 @@ class Cancelling {
       }
       first += static_cast<std::uint32_t>(starts_.size() - started);
     }
-    waves_.emplace(std::move(waves), Context());
+    waves_.emplace(waves, Context());
     grow();
   }
   const std::vector<Index>& waves() const { return starts_; }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <queue>
+#include <span>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -173,6 +174,18 @@ std::vector<UnitWaves::Piece> cut(std::size_t triangles, double radius, std::siz
   return pieces;
 }
 
+/// Some pieces each as one. To join all at once would leave the ways over their borders to a single
+/// thread.
+std::vector<UnitWaves> joined(std::vector<UnitWaves>&& pieces, const Context& context) {
+  constexpr std::size_t at_once = 4;
+  std::vector<UnitWaves> result;
+  for (std::size_t begin = 0; begin < pieces.size(); begin += at_once) {
+    const std::size_t end = std::min(pieces.size(), begin + at_once);
+    result.emplace_back(std::span(pieces).subspan(begin, end - begin), context);
+  }
+  return result;
+}
+
 }  // namespace
 
 void cancel_position_singularities(LatticeMesh& lattice, const CancellingCost& most,
@@ -187,9 +200,12 @@ void cancel_position_singularities(LatticeMesh& lattice, const CancellingCost& m
   context.for_ranges(pieces.size(), 1, [&](std::size_t k, std::size_t) {
     Cancelling(lattice, carrier, waves[k], most, context).run_within(pieces[k]);
   });
-  if (pieces.size() == 1) return;
-  UnitWaves whole(std::move(waves), context);
-  Cancelling(lattice, carrier, whole, most, context).run_on();
+  while (waves.size() > 1) {
+    waves = joined(std::move(waves), context);
+    context.for_ranges(waves.size(), 1, [&](std::size_t k, std::size_t) {
+      Cancelling(lattice, carrier, waves[k], most, context).run_on();
+    });
+  }
 }
 
 }  // namespace meshgrain

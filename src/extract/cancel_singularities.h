@@ -20,7 +20,7 @@ struct CancellingCost {
 /// that.
 ///
 /// A large mesh is cut into pieces of at least `at_once` triangles, so many that they fit into the
-/// caches: several are done at a time, and then the ways over their borders.
+/// caches: several are done at a time, then some of them together, and so on.
 void cancel_position_singularities(LatticeMesh& lattice, const CancellingCost& most,
                                    const Context& context, std::size_t at_once = 1 << 14);
 

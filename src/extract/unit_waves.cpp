@@ -18,7 +18,7 @@ UnitWaves::UnitWaves(const UnitCarrier& carrier, double radius, std::vector<Labe
       labels_(labels),
       wave_(piece.end - piece.begin, no_index) {}
 
-UnitWaves::UnitWaves(std::vector<UnitWaves>&& pieces, const Context& context)
+UnitWaves::UnitWaves(std::span<UnitWaves> pieces, const Context& context)
     : UnitWaves(pieces.front().carrier_, pieces.front().radius_, pieces.front().labels_,
                 {pieces.front().piece_.begin, pieces.back().piece_.end}) {
   std::vector<std::uint32_t> first_waves{0};
@@ -26,6 +26,7 @@ UnitWaves::UnitWaves(std::vector<UnitWaves>&& pieces, const Context& context)
     first_waves.push_back(first_waves.back() + static_cast<std::uint32_t>(piece.waves_.size()));
   }
   context.for_ranges(pieces.size(), 1, [&](std::size_t k, std::size_t) {
+    if (first_waves[k] == 0) return;
     const auto [begin, end] = pieces[k].piece_;
     const std::uint32_t last = carrier_.number({4 * end, 0});
     for (std::uint32_t number = carrier_.number({4 * begin, 0}); number < last; ++number) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "extract/unit_carrier.h"
@@ -46,9 +47,9 @@ class UnitWaves {
   UnitWaves(const UnitCarrier& carrier, double radius, std::vector<Label>& labels,
             const Piece& piece);
 
-  /// The waves of pieces that lie one behind the other, together. They go on over the borders in
+  /// Takes over the waves of pieces that lie one behind the other. They go on over the borders in
   /// between when they grow again.
-  UnitWaves(std::vector<UnitWaves>&& pieces, const Context& context);
+  UnitWaves(std::span<UnitWaves> pieces, const Context& context);
 
   /// A place where a unit of one wave could meet one of another, or end for good.
   struct Meeting {
