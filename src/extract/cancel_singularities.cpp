@@ -36,7 +36,7 @@ class Cancelling {
       waves_.set_reach(reach);
       find_meetings();
       const bool is_last = waves_.are_grown();
-      take_ways(is_last ? UnitCarrier::forbidden : reach);
+      take_ways(is_last ? UnitWaves::never : reach);
       if (is_last && waves_.are_grown()) return;
     }
   }
@@ -44,7 +44,7 @@ class Cancelling {
   /// What is left, where waves have grown already.
   void run_on() {
     find_meetings();
-    take_ways(UnitCarrier::forbidden);
+    take_ways(UnitWaves::never);
   }
 
  private:
@@ -177,10 +177,10 @@ std::vector<UnitWaves::Piece> cut(std::size_t triangles, double radius, std::siz
 /// Some pieces each as one. To join all at once would leave the ways over their borders to a single
 /// thread.
 std::vector<UnitWaves> joined(std::vector<UnitWaves>&& pieces, const Context& context) {
-  constexpr std::size_t at_once = 4;
+  constexpr std::size_t group = 4;
   std::vector<UnitWaves> result;
-  for (std::size_t begin = 0; begin < pieces.size(); begin += at_once) {
-    const std::size_t end = std::min(pieces.size(), begin + at_once);
+  for (std::size_t begin = 0; begin < pieces.size(); begin += group) {
+    const std::size_t end = std::min(pieces.size(), begin + group);
     result.emplace_back(std::span(pieces).subspan(begin, end - begin), context);
   }
   return result;
