@@ -7,6 +7,7 @@
 
 #include "meshgrain/error.h"
 #include "remesh/memory.h"
+#include "remesh/notes.h"
 #include "remesh/pipeline.h"
 #include "symmetry/remesh_symmetric.h"
 
@@ -66,16 +67,23 @@ void make_mesh(Pipeline& pipeline) {
   pipeline.report_fields();
 }
 
+RemeshResult remesh_as_it_is(Mesh input, const RemeshOptions& options, const Context& context) {
+  Pipeline pipeline(input, options, context);
+  prepare(pipeline, std::move(input));
+  make_mesh(pipeline);
+  return std::move(pipeline).result();
+}
+
 }  // namespace
 
 RemeshResult remesh(Mesh input, const RemeshOptions& options, const Context& context) {
   check(options);
   check_memory(input, options, context);
-  if (options.symmetry.any()) return remesh_symmetric(std::move(input), options, context);
-  Pipeline pipeline(input, options, context);
-  prepare(pipeline, std::move(input));
-  make_mesh(pipeline);
-  return std::move(pipeline).result();
+  RemeshResult result = options.symmetry.any()
+                            ? remesh_symmetric(std::move(input), options, remesh_as_it_is, context)
+                            : remesh_as_it_is(std::move(input), options, context);
+  note_missed_count(result, options);
+  return result;
 }
 
 std::vector<RemeshResult> remesh_levels(Mesh input, std::span<const std::size_t> face_counts,
@@ -100,13 +108,12 @@ std::vector<RemeshResult> remesh_levels(Mesh input, std::span<const std::size_t>
                    [&](std::size_t a, std::size_t b) { return face_counts[a] > face_counts[b]; });
   std::vector<RemeshResult> levels(face_counts.size());
   for (const std::size_t k : order) {
-    if (k != order.front()) {
-      RemeshOptions level = options;
-      level.face_count = face_counts[k];
-      pipeline.change_target(level);
-    }
+    RemeshOptions level = options;
+    level.face_count = face_counts[k];
+    if (k != order.front()) pipeline.change_target(level);
     make_mesh(pipeline);
     levels[k] = pipeline.take_mesh(prepared);
+    note_missed_count(levels[k], level);
   }
   return levels;
 }

@@ -56,6 +56,54 @@ TEST(Regularity, CountsAreWithinOnePercent) {
   }
 }
 
+/// A grid has other counts than these: single quads are added to it or closed, side by side.
+TEST(Regularity, CountsThatNoGridHasAreMetToo) {
+  struct Case {
+    const char* name;
+    std::size_t corners;  // irregular in every result
+  };
+  for (const auto& [name, corners] : {Case{"plate", 0}, Case{"cube", 8}, Case{"twisted-cube", 8}}) {
+    const Mesh shape = sample_shape(name);
+    for (const auto faces : {OutputFaces::quads, OutputFaces::quad_dominant}) {
+      for (const double regularity : {0.5, 1.0}) {
+        for (const std::size_t count : {300, 330, 400}) {
+          SCOPED_TRACE(testing::Message() << name << ", kind " << static_cast<int>(faces) << ", "
+                                          << regularity << ", " << count << " faces");
+          const Mesh mesh = remesh_shape(shape, faces, count, regularity).mesh;
+          const MeshStatistics statistics = mesh_statistics(mesh);
+          const auto wanted = static_cast<double>(count);
+          EXPECT_NEAR(static_cast<double>(statistics.faces), wanted, 0.01 * wanted);
+          EXPECT_EQ(statistics.euler, mesh_statistics(shape).euler);
+          EXPECT_EQ(statistics.inverted_quads, 0u);
+          EXPECT_LE(statistics.singularities, corners + 16);
+        }
+      }
+    }
+  }
+}
+
+/// What is marked takes more faces than are wanted. Of a mesh made of two halves, the whole counts.
+TEST(Regularity, AMissedCountIsTold) {
+  const Mesh shape = sample_shape("sphere", 0.15);
+  RemeshOptions options;
+  options.face_count = 100;
+  options.features.creases = Creases::by_angle;
+  options.features.crease_degrees = 1;
+  for (const bool symmetric : {false, true}) {
+    SCOPED_TRACE(symmetric);
+    options.symmetry.automatic = symmetric;
+    const RemeshResult result = remesh(shape, options);
+    const std::string note = "made " + std::to_string(result.mesh.faces.size()) +
+                             " faces where 100 were asked for, as topology and features come "
+                             "before the count";
+    EXPECT_EQ(result.report.notes.back(), note);
+    EXPECT_EQ(result.report.notes.size(), symmetric ? 2u : 1u);
+  }
+  options.symmetry.automatic = false;
+  options.features.creases = Creases::none;
+  EXPECT_TRUE(remesh(shape, options).report.notes.empty());
+}
+
 /// The target that nobody asked for need not be met so closely that positions are solved again.
 TEST(Regularity, ByDefaultOneAttemptIsEnough) {
   for (const char* name : {"blob", "three-holes", "bracket"}) {

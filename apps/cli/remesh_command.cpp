@@ -129,6 +129,18 @@ void write_report(const Arguments& a, const std::vector<Written>& meshes, int th
   write_file(a.report, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
+/// Each line once, though several levels may have it.
+void print_notes(const std::vector<Written>& meshes) {
+  std::vector<std::string> printed;
+  for (const Written& mesh : meshes) {
+    for (const std::string& note : mesh.report.notes) {
+      if (std::ranges::find(printed, note) != printed.end()) continue;
+      fmt::print(stderr, "meshgrain: note: {}\n", note);
+      printed.push_back(note);
+    }
+  }
+}
+
 std::vector<RemeshResult> make_meshes(const Arguments& a, Mesh input, const Context& context) {
   if (!a.levels.empty()) return remesh_levels(std::move(input), a.levels, a.remesh, context);
   std::vector<RemeshResult> results;
@@ -181,11 +193,7 @@ void run(Arguments& a, Context& context) {
     write_report(a, written, context.threads(), read_seconds, write_seconds, seconds);
   }
   bar.clear();
-  if (!a.quiet) {
-    for (const std::string& note : written.front().report.notes) {
-      fmt::print(stderr, "meshgrain: note: {}\n", note);
-    }
-  }
+  if (!a.quiet) print_notes(written);
   for (std::size_t k = 0; summary && k < written.size(); ++k) {
     fmt::print(stderr, "{}: {} ({:.2f} s)\n", file_name(written[k].path),
                describe(written[k].statistics), seconds);

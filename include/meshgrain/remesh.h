@@ -86,7 +86,7 @@ struct StageTime {
 
 struct RemeshReport {
   std::vector<StageTime> stages;
-  std::vector<std::string> notes;  ///< What was mended or left out, a line each.
+  std::vector<std::string> notes;  ///< What was mended, left out or missed, a line each.
   std::size_t input_vertices = 0, input_faces = 0;
   std::size_t nodes = 0, edges = 0, levels = 0;
   double edge_length = 0;

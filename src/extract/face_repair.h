@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <tuple>
+#include <type_traits>
 #include <vector>
 
 #include "extract/clusters.h"
@@ -70,6 +71,9 @@ class FaceRepair {
   /// The opposite: cuts vertices with far too many edges in two, with a quad in between, as long as
   /// that leaves fewer irregular vertices.
   void open_vertices();
+  /// Cuts `count` of them, however many edges they have, wherever it leaves the fewest. Returns how
+  /// many it could.
+  std::size_t open_vertices(std::size_t count);
 
   // Quads alone (even_faces.cpp): what pair_odd_faces() does to the faces on its ways.
 
@@ -148,10 +152,15 @@ class FaceRepair {
   /// vertex, and the other ends of these two get an edge to both.
   struct Opening {
     int gain = 0;     // by how much the number of irregular vertices falls
-    int squares = 0;  // of what the vertices then have too many edges or too few
+    int squares = 0;  // of what the vertices then have too many edges or too few: how many more
     Index first = no_index, last = no_index;
+    /// What is larger for a better one.
+    auto worth() const { return std::tuple(gain, -squares); }
   };
-  Opening best_opening(Index vertex) const;
+  bool may_open(Index vertex) const;
+  /// The best one that starts at `first`, if any gains `least` or more.
+  std::optional<Opening> opening_from(Index first, int least) const;
+  std::optional<Opening> best_opening(Index vertex) const;
   void open(const Opening& opening);
   /// The same for contracting h between triangles.
   std::optional<int> contraction_gain(Index h);
@@ -163,10 +172,13 @@ class FaceRepair {
   bool is_loose(Index vertex) const {
     return !clusters_.on_border[vertex] && clusters_.hold[vertex] == free_vertex;
   }
-  /// Applies the change with the greatest gain `count` times, of several the one whose two vertices
-  /// are nearest to each other.
-  template <typename Gain, typename Other, typename Apply>
-  std::size_t reduce(std::size_t count, const Gain& gain, const Other& other, const Apply& apply);
+  float distance(Index a, Index b) const {
+    return (clusters_.positions[a] - clusters_.positions[b]).norm();
+  }
+  /// Applies the change with the greatest gain `count` times, of several the one of the least cost.
+  template <typename Gain, typename Cost, typename Apply>
+  std::size_t change_best(std::size_t count, const Gain& gain, const Cost& cost,
+                          const Apply& apply);
   int flip_gain(Index h) const;
   double chord_cost(std::span<const Index> orbit, std::size_t from) const;
   Vec3 along(Index h) const;
@@ -186,34 +198,33 @@ class FaceRepair {
   LinkCondition link_;
 };
 
-template <typename Gain, typename Other, typename Apply>
-std::size_t FaceRepair::reduce(std::size_t count, const Gain& gain, const Other& other,
-                               const Apply& apply) {
+template <typename Gain, typename Cost, typename Apply>
+std::size_t FaceRepair::change_best(std::size_t count, const Gain& gain, const Cost& cost,
+                                    const Apply& apply) {
+  using Worth = std::remove_cvref_t<decltype(*gain(Index{}))>;
   struct Candidate {
-    int gain;
-    float distance;
+    Worth gain;
+    float cost;
     Index h;
-    auto key() const { return std::tuple(-gain, distance, h); }
   };
   std::size_t done = 0;
   while (done < count) {
     std::vector<Candidate> candidates;
     for (Index h = 0; h < map_.halfedges(); ++h) {
-      if (const std::optional<int> g = gain(h)) {
-        const Vec3 d = clusters_.positions[map_.origin(h)] - clusters_.positions[other(h)];
-        candidates.push_back({*g, d.norm(), h});
-      }
+      if (const std::optional<Worth> g = gain(h)) candidates.push_back({*g, cost(h), h});
     }
     if (candidates.empty()) break;
-    std::sort(candidates.begin(), candidates.end(),
-              [](const Candidate& a, const Candidate& b) { return a.key() < b.key(); });
-    const int best = candidates.front().gain;
+    std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+      return std::tie(b.gain, a.cost, a.h) < std::tie(a.gain, b.cost, b.h);
+    });
+    const auto best = candidates.front().gain;
     const std::size_t before = done;
     for (const Candidate& c : candidates) {
       if (c.gain < best || done == count) break;
       if (gain(c.h) != best) continue;  // what lies beside it has changed
       apply(c.h);
       ++done;
+      if (best < Worth{}) break;  // beside what that left it may cost less
     }
     if (done == before) break;
   }

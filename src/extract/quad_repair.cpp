@@ -257,41 +257,49 @@ void FaceRepair::close_quads() {
   }
 }
 
-FaceRepair::Opening FaceRepair::best_opening(Index vertex) const {
-  Opening best;
+bool FaceRepair::may_open(Index vertex) const {
   // All pairs of edges are tried, which would take long at a pole of thousands.
-  constexpr std::size_t least = 7, most = 30;
-  const std::size_t n = map_.valence(vertex);
-  if (n < least || n > most || clusters_.on_border[vertex]) return best;
-  if (clusters_.hold[vertex] == at_corner) return best;
-  std::vector<Index> leaving;
-  map_.for_each_leaving(vertex, [&](Index h) { leaving.push_back(h); });
+  constexpr std::size_t most = 30;
+  return !clusters_.on_border[vertex] && clusters_.hold[vertex] != at_corner &&
+         map_.valence(vertex) <= most;
+}
+
+std::optional<FaceRepair::Opening> FaceRepair::opening_from(Index first, int least) const {
+  const Index vertex = map_.origin(first);
+  const auto n = static_cast<int>(map_.valence(vertex));
   const auto excess = [&](Index v) {
     return static_cast<int>(map_.valence(v)) - regular_valence(clusters_.on_border[v]);
   };
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t k = 1; k + 2 <= n; ++k) {  // edges that go; those of lines stay
-      if (line(leaving[(i + k - 1) % n]) != no_index) break;
-      if (k == 1) continue;
-      Opening opening{1, 0, leaving[i], leaving[(i + k) % n]};
-      const auto change = [&](int before, int after) {
-        opening.gain += (before != 0) - (after != 0);
-        opening.squares += after * after - before * before;
-      };
-      for (const std::size_t edges : {k + 1, n - k + 1}) {
-        change(0, static_cast<int>(edges) - regular_valence(false));
-      }
-      bool fixed = false;
-      for (const Index h : {opening.first, opening.last}) {
-        const Index v = map_.target(h);
-        fixed = fixed || clusters_.hold[v] == at_corner;
-        change(excess(v), excess(v) + 1);
-      }
-      if (fixed || opening.gain <= 0 || opening.gain < best.gain) continue;
-      if (opening.gain == best.gain && opening.squares >= best.squares) continue;
-      best = opening;
-    }
+  const auto ends_well = [&](Index h) { return clusters_.hold[map_.target(h)] != at_corner; };
+  std::optional<Opening> best;
+  if (!ends_well(first)) return best;
+  Index last = first;
+  for (int k = 1; k + 2 <= n; ++k) {    // edges that go
+    if (line(last) != no_index) break;  // those of lines stay
+    last = map_.around(last);
+    if (k == 1 || !ends_well(last)) continue;
+    Opening opening{0, 0, first, last};
+    const auto change = [&](int before, int after) {
+      opening.gain += (before != 0) - (after != 0);
+      opening.squares += after * after - before * before;
+    };
+    change(excess(vertex), n - k + 1 - regular_valence(false));
+    change(0, k + 1 - regular_valence(false));
+    for (const Index v : {map_.target(first), map_.target(last)}) change(excess(v), excess(v) + 1);
+    if (opening.gain < least) continue;
+    if (!best || opening.worth() > best->worth()) best = opening;
   }
+  return best;
+}
+
+std::optional<FaceRepair::Opening> FaceRepair::best_opening(Index vertex) const {
+  std::optional<Opening> best;
+  constexpr std::size_t far_too_many = 7;
+  if (map_.valence(vertex) < far_too_many || !may_open(vertex)) return best;
+  map_.for_each_leaving(vertex, [&](Index first) {
+    const std::optional<Opening> opening = opening_from(first, best ? best->gain : 1);
+    if (opening && (!best || opening->worth() > best->worth())) best = opening;
+  });
   return best;
 }
 
@@ -316,16 +324,31 @@ void FaceRepair::open(const Opening& opening) {
 
 void FaceRepair::open_vertices() {
   for (Index v = 0; v < map_.vertices(); ++v) {  // new ones, too
-    for (Opening opening = best_opening(v); opening.first != no_index; opening = best_opening(v)) {
-      open(opening);
-    }
+    while (const std::optional<Opening> opening = best_opening(v)) open(*opening);
   }
 }
 
+std::size_t FaceRepair::open_vertices(std::size_t count) {
+  const auto opening = [&](Index h) -> std::optional<Opening> {
+    if (map_.removed(h) || !may_open(map_.origin(h))) return std::nullopt;
+    return opening_from(h, std::numeric_limits<int>::min());
+  };
+  return change_best(
+      count,
+      [&](Index h) {
+        const std::optional<Opening> best = opening(h);
+        return best ? std::optional(best->worth()) : std::nullopt;
+      },
+      // Where there is most room.
+      [&](Index h) { return -distance(map_.target(h), map_.target(opening(h)->last)); },
+      [&](Index h) { open(*opening(h)); });
+}
+
 std::size_t FaceRepair::close_quads(std::size_t count) {
-  return reduce(
+  return change_best(
       count, [&](Index h) { return closing_gain(h, std::numeric_limits<int>::min()); },
-      [&](Index h) { return map_.target(map_.next(h)); }, [&](Index h) { close_quad(h); });
+      [&](Index h) { return distance(map_.origin(h), map_.target(map_.next(h))); },
+      [&](Index h) { close_quad(h); });
 }
 
 }  // namespace meshgrain

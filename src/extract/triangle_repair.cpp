@@ -97,8 +97,9 @@ std::optional<int> FaceRepair::contraction_gain(Index h) {
 }
 
 std::size_t FaceRepair::contract_edges(std::size_t count, const Context& context) {
-  const std::size_t done = reduce(
-      count, [&](Index h) { return contraction_gain(h); }, [&](Index h) { return map_.target(h); },
+  const std::size_t done = change_best(
+      count, [&](Index h) { return contraction_gain(h); },
+      [&](Index h) { return distance(map_.origin(h), map_.target(h)); },
       [&](Index h) {
         const Index a = map_.origin(h), b = map_.target(h);
         if (!clusters_.on_border[a] && clusters_.hold[a] == free_vertex) {

@@ -1,5 +1,8 @@
 #include "remesh/notes.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace meshgrain {
 
 std::vector<std::string> describe(const CleanReport& cleaned) {
@@ -27,6 +30,22 @@ std::vector<std::string> describe(const OrientReport& oriented) {
                     " pieces open along a short curve, as they have only one side");
   }
   return notes;
+}
+
+void note_missed_count(RemeshResult& result, const RemeshOptions& options) {
+  const bool by_faces = options.face_count > 0;
+  const std::size_t asked = by_faces ? options.face_count : options.vertex_count;
+  const bool is_given = options.fields != nullptr && !options.fields->position.points.empty();
+  if (options.edge_length > 0 || asked == 0 || is_given) return;
+  const std::size_t made = by_faces ? result.mesh.faces.size() : result.mesh.positions.size();
+  const double wanted = static_cast<double>(asked);
+  const double off = static_cast<double>(made) - wanted;
+  if (std::abs(off) <= std::max(1.0, 0.01 * wanted)) return;
+  // In the order of what gives way to what.
+  result.report.notes.push_back(
+      "made " + std::to_string(made) + (by_faces ? " faces" : " vertices") + " where " +
+      std::to_string(asked) + " were asked for" +
+      (off > 0 ? ", as topology and features come before the count" : ""));
 }
 
 }  // namespace meshgrain

@@ -5,11 +5,16 @@
 
 #include "mesh/orient_faces.h"
 #include "meshgrain/clean.h"
+#include "meshgrain/remesh.h"
 
 namespace meshgrain {
 
 /// What was taken out of an input or turned in it, a line each, for RemeshReport::notes.
 std::vector<std::string> describe(const CleanReport& cleaned);
 std::vector<std::string> describe(const OrientReport& oriented);
+
+/// Adds a line to the report if a finished mesh is off the count that was asked for by more than
+/// one percent.
+void note_missed_count(RemeshResult& result, const RemeshOptions& options);
 
 }  // namespace meshgrain

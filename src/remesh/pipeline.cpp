@@ -8,8 +8,8 @@
 
 #include "border/lock_borders.h"
 #include "extract/add_strips.h"
-#include "extract/reduce_faces.h"
 #include "extract/remove_strips.h"
+#include "extract/single_faces.h"
 #include "features/lines_abreast.h"
 #include "field/transfer.h"
 #include "finish/face_shape.h"
@@ -310,17 +310,23 @@ void Pipeline::find_faces() {
       lengths_ = graded(graph(), scaled(lengths_, std::exp(-more / 2)), growth(), context_);
     }
   }
+  if (!has_room || is_split_) return;
   const double ratio = target_.count_ratio(extraction_.mesh);
-  if (has_room && !is_split_ && ratio > 1 + tolerance && ratio < 1.35) {
-    take_faces_away(extraction_);
+  const double most_to_change = given ? 1 + target_.surplus() : 2;
+  if (ratio > 1 + tolerance && ratio < most_to_change && !take_faces_away(extraction_)) {
+    stage_("extraction",
+           [&] { take_strips(extraction_, extraction_.mesh.faces.corners().size()); });
   }
+  if (ratio < 1 - tolerance && ratio > 1 / most_to_change) add_single_faces();
 }
 
 bool Pipeline::take_faces_away(Extraction& extraction) {
   return stage_("extraction", [&] {
-    if (take_strips(extraction)) return true;
+    // Single quads beside strips, if these are fewer than the larger ones from before the split.
+    const std::size_t larger = target_.faces_to_close(extraction.mesh, strip_tolerance);
+    if (take_strips(extraction, larger)) return true;
     const std::size_t wanted = target_.faces_to_close(extraction.mesh, target_.tolerance());
-    return reduce_faces(extraction, posy_of(options_.faces), wanted, context_) >= wanted;
+    return remove_single_faces(extraction, posy_of(options_.faces), wanted, context_) >= wanted;
   });
 }
 
@@ -334,16 +340,27 @@ bool Pipeline::add_faces(Extraction& extraction) {
   });
 }
 
-bool Pipeline::take_strips(Extraction& extraction) {
+void Pipeline::add_single_faces() {
+  if (posy_of(options_.faces) != 4) return;
+  stage_("extraction", [&] {
+    const std::size_t missing = target_.missing_quads(extraction_.mesh);
+    if (lattice_faces_ == OutputFaces::quads) {
+      split(extraction_);
+      is_split_ = true;
+    }
+    add_single_quads(extraction_, missing, context_);
+  });
+}
+
+bool Pipeline::take_strips(Extraction& extraction, std::size_t most_single) {
   return change_quads(extraction, [&](Extraction& quads, double count, double wanted) {
     const auto least = static_cast<std::size_t>(std::ceil(count - (1 + strip_tolerance) * wanted));
     const auto most = static_cast<std::size_t>(count - (1 - strip_tolerance) * wanted);
     const std::size_t gone = remove_strips(quads, least, most, context_);
     if (gone >= least) return true;
-    // Single quads for the rest, if these are fewer than the larger ones from before the split.
     const std::size_t rest = least - gone;
-    return rest <= target_.faces_to_close(extraction.mesh, strip_tolerance) &&
-           reduce_faces(quads, posy_of(options_.faces), rest, context_) >= rest;
+    return rest <= most_single &&
+           remove_single_faces(quads, posy_of(options_.faces), rest, context_) >= rest;
   });
 }
 

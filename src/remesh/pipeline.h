@@ -74,9 +74,11 @@ class Pipeline {
   /// Adds strips of quads until there are as many faces as wanted. Returns whether that came to be;
   /// what is left is split then, else as it was.
   bool add_faces(Extraction& extraction);
-  /// Strips of quads, and single ones for the rest. Returns whether that is better than fewer of
-  /// the larger quads: what is left is split then, else as it was.
-  bool take_strips(Extraction& extraction);
+  /// Adds single quads, in the end, to a mesh that has too few faces.
+  void add_single_faces();
+  /// Takes strips of quads away, and single ones for the rest. Returns whether that needs no more
+  /// than `most_single`: what is left is split then, else as it was.
+  bool take_strips(Extraction& extraction, std::size_t most_single);
   /// Pure quads: `change(quads, count, wanted)` is to bring what will be written from one number of
   /// faces to the other. If it returns true that is kept, split; else all is as it was.
   template <typename Change>

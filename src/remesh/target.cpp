@@ -132,6 +132,12 @@ std::size_t Target::faces_to_close(const Mesh& mesh, double tolerance) const {
       std::ceil(faces_ > 0 ? excess * faces_ / faces_per_cell_ : excess * vertices_ / vertices)));
 }
 
+std::size_t Target::missing_quads(const Mesh& mesh) const {
+  const double missing = 1 - tolerance() - count_ratio(mesh);
+  return static_cast<std::size_t>(
+      std::max(0.0, std::ceil(missing * (faces_ > 0 ? faces_ : vertices_))));
+}
+
 std::size_t Target::spare_faces(const Mesh& mesh) const {
   // A vertex goes with each of them.
   const auto count = static_cast<double>(faces_ > 0 ? mesh.faces.size() : mesh.positions.size());

@@ -66,8 +66,13 @@ class Target {
   /// tell to within less how many there will be.
   double surplus() const;
 
-  /// How often reduce_faces() must act on a mesh so that it has no more than this share too many.
+  /// How often remove_single_faces() must act on a mesh so that it has no more than this share too
+  /// many.
   std::size_t faces_to_close(const Mesh& mesh, double tolerance) const;
+
+  /// How many quads, each with a vertex of its own, are to be added to what is written so that it
+  /// has no more than the tolerance too few.
+  std::size_t missing_quads(const Mesh& mesh) const;
 
   /// How many faces a finished mesh may lose.
   std::size_t spare_faces(const Mesh& mesh) const;

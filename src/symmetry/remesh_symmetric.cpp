@@ -46,7 +46,8 @@ std::vector<MirrorPlane> find_symmetry(const Mesh& input, const Symmetry& symmet
 
 }  // namespace
 
-RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const Context& context) {
+RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const RemeshHalf& remesh_half,
+                              const Context& context) {
   if (input.is_point_cloud()) throw Error("symmetry needs a mesh: the input is a point cloud");
   if (options.faces == OutputFaces::hexagons) throw Error("hexagons cannot be made symmetric");
   const std::size_t vertices = input.positions.size(), faces = input.faces.size();
@@ -87,7 +88,7 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const Context& 
                          });
   // Where a half is a single quad wide, its two sides would be in the plane.
   if (!planes.empty()) options.fine_lattice = false;
-  RemeshResult result = remesh(std::move(input), options, context);
+  RemeshResult result = remesh_half(std::move(input), options, context);
   for (const MirrorPlane& plane : planes) {
     // All of the border of what was closed must come to lie on the plane.
     const double near = is_closed ? std::numeric_limits<double>::infinity()
