@@ -64,6 +64,7 @@ void make_mesh(Pipeline& pipeline) {
   pipeline.position_and_extract();
   pipeline.smooth_faces();
   pipeline.try_coarser_lattice();
+  pipeline.untwist_faces();
   pipeline.report_fields();
 }
 

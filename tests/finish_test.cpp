@@ -15,6 +15,7 @@
 #include "finish/go_around.h"
 #include "finish/placement.h"
 #include "finish/unfold.h"
+#include "finish/untwist.h"
 #include "mesh/vertex_faces.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
@@ -375,6 +376,47 @@ Index nearest(const Mesh& surface, const Vec3& p) {
   };
   return static_cast<Index>(std::ranges::min_element(surface.positions, nearer) -
                             surface.positions.begin());
+}
+
+/// A grid over a plane, of which some vertices lie where they turn quads in; those of the border,
+/// or at a corner, must stay there.
+TEST(Finish, TwistedQuadsGoOffTheSurface) {
+  constexpr Index n = 7;
+  Extraction grid;
+  const auto at = [](Index x, Index y) { return y * n + x; };
+  for (Index y = 0; y < n; ++y) {
+    for (Index x = 0; x < n; ++x) {
+      grid.mesh.positions.push_back(Vec3(static_cast<float>(x), static_cast<float>(y), 0));
+      grid.nodes.push_back(at(x, y));
+      if (x > 0 && y > 0) {
+        grid.mesh.faces.push_back({at(x - 1, y - 1), at(x, y - 1), at(x, y), at(x - 1, y)});
+      }
+    }
+  }
+  const std::vector<Vec3> normals(n * n, Vec3::UnitZ());
+  const Extraction regular = grid;
+  untwist(grid, normals, Context());
+  EXPECT_EQ(grid.mesh.positions, regular.mesh.positions);
+
+  grid.mesh.positions[at(3, 3)] += Vec3(1.1f, 0.2f, 0);
+  grid.mesh.positions[at(2, 1)] += Vec3(-0.4f, 0.2f, 0.3f);
+  grid.corners = {at(2, 1)};
+  const Extraction before = grid;
+  ASSERT_GT(mesh_statistics(grid.mesh).inverted_quads, 0u);
+  untwist(grid, normals, Context());
+  EXPECT_EQ(mesh_statistics(grid.mesh).inverted_quads, 0u);
+  EXPECT_TRUE(find_crossings(grid.mesh, Context()).empty());
+  EXPECT_EQ(grid.mesh.positions[at(2, 1)], before.mesh.positions[at(2, 1)]);
+  for (Index y = 0; y < n; ++y) {
+    for (Index x = 0; x < n; ++x) {
+      const Vec3& p = grid.mesh.positions[at(x, y)];
+      const bool on_border = x == 0 || y == 0 || x == n - 1 || y == n - 1;
+      if (on_border) {
+        EXPECT_EQ(p, regular.mesh.positions[at(x, y)]);
+      }
+      EXPECT_LT((p - before.mesh.positions[at(x, y)]).norm(), 2.0f);
+    }
+  }
 }
 
 /// A leg of five faces around: from its far side no step over the surface leads back.

@@ -318,4 +318,14 @@ std::vector<std::array<Index, 2>> find_crossings(const Mesh& mesh, const Context
   return result;
 }
 
+std::size_t count_crossings(const Mesh& mesh, const Eigen::AlignedBox3f& box,
+                            const Context& context) {
+  Mesh near;
+  near.positions = mesh.positions;
+  for (Index f = 0; f < mesh.faces.size(); ++f) {
+    if (face_box(mesh, f).intersects(box)) near.faces.push_back(mesh.faces[f]);
+  }
+  return find_crossings(near, context).size();
+}
+
 }  // namespace meshgrain

@@ -20,4 +20,8 @@ double penetration_of_near(const Mesh& mesh, Index f, Index g);
 /// All pairs of faces that pass through each other, the lower number first, in increasing order.
 std::vector<std::array<Index, 2>> find_crossings(const Mesh& mesh, const Context& context);
 
+/// How many there are of them between the faces whose boxes meet this one.
+std::size_t count_crossings(const Mesh& mesh, const Eigen::AlignedBox3f& box,
+                            const Context& context);
+
 }  // namespace meshgrain

@@ -43,4 +43,16 @@ inline float least_sine(std::span<const Index> face, const std::vector<Vec3>& po
   return least;
 }
 
+/// What a face is worth: its least sine along its own normal, below -1 if that looks away from
+/// `upward`. `area`: its area vector.
+inline float face_quality(std::span<const Index> face, const std::vector<Vec3>& positions,
+                          const Vec3& area, const Vec3& upward) {
+  const float length = area.norm();
+  if (!(length > 0)) return -1;
+  const Vec3 normal = area / length;
+  const float least = least_sine(face, positions, normal);
+  const float towards = normal.dot(upward);
+  return towards < 0 ? std::min(least, 0.0f) - 1 + towards : least;
+}
+
 }  // namespace meshgrain

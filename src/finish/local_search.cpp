@@ -26,17 +26,6 @@ float best_quality(std::size_t n) {
   return n == 4 ? 1 : std::sin(2 * std::numbers::pi_v<float> / static_cast<float>(n));
 }
 
-/// `area`: the face's area vector.
-float face_quality(std::span<const Index> face, const std::vector<Vec3>& positions,
-                   const Vec3& area, const Vec3& upward) {
-  const float length = area.norm();
-  if (!(length > 0)) return -1;
-  const Vec3 normal = area / length;
-  const float least = least_sine(face, positions, normal);
-  const float towards = normal.dot(upward);
-  return towards < 0 ? std::min(least, 0.0f) - 1 + towards : least;
-}
-
 }  // namespace
 
 LocalSearch::LocalSearch(Extraction& extraction, const VertexFaces& around, Placement& placement,

@@ -147,7 +147,10 @@ class Closing {
       }
       Extraction result = put_back(whole_, piece, changed, sources);
       const Eigen::AlignedBox3f box = box_of(piece.extraction).merged(box_of(changed));
-      if (crossings(result, box) > crossings(whole_, box)) continue;
+      const auto crossings = [&](const Extraction& extraction) {
+        return count_crossings(extraction.mesh, box, context_);
+      };
+      if (crossings(result) > crossings(whole_)) continue;
       whole_ = std::move(result);
       return true;
     }
@@ -166,17 +169,6 @@ class Closing {
     Eigen::AlignedBox3f box;
     for (const Vec3& p : part.mesh.positions) box.extend(p);
     return box;
-  }
-
-  /// Between the faces that reach into a box.
-  std::size_t crossings(const Extraction& extraction, const Eigen::AlignedBox3f& box) const {
-    const Faces& faces = extraction.mesh.faces;
-    Mesh near;
-    near.positions = extraction.mesh.positions;
-    for (Index f = 0; f < faces.size(); ++f) {
-      if (face_box(extraction.mesh, f).intersects(box)) near.faces.push_back(faces[f]);
-    }
-    return find_crossings(near, context_).size();
   }
 
   Extraction& whole_;

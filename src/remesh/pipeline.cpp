@@ -14,6 +14,7 @@
 #include "field/transfer.h"
 #include "finish/face_shape.h"
 #include "finish/smooth.h"
+#include "finish/untwist.h"
 #include "mesh/border.h"
 #include "meshgrain/error.h"
 #include "meshgrain/singularities.h"
@@ -441,6 +442,11 @@ void Pipeline::try_coarser_lattice() {
   extraction_ = std::move(finer);
   fields().position = std::move(positions);
   result_.report.position_energies = std::move(energies);
+}
+
+void Pipeline::untwist_faces() {
+  if (options_.smoothing == 0 || posy_of(options_.faces) != 4) return;
+  stage_("smoothing", [&] { untwist(extraction_, graph().normals, context_); });
 }
 
 void Pipeline::aim_at(OutputFaces lattice_faces) {

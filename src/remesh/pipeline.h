@@ -56,6 +56,8 @@ class Pipeline {
   /// Where refine_for_details() leaves inverted quads, what there would be without it: that is kept
   /// if it has fewer.
   void try_coarser_lattice();
+  /// Quads that are twisted even then leave the surface.
+  void untwist_faces();
 
   /// Their edge length and singularities.
   void report_fields();

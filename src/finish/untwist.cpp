@@ -1,0 +1,193 @@
+#include "finish/untwist.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include "finish/crossings.h"
+#include "finish/face_shape.h"
+#include "mesh/border.h"
+#include "mesh/vertex_faces.h"
+#include "util/collect.h"
+
+namespace meshgrain {
+namespace {
+
+class Untwisting {
+ public:
+  Untwisting(Extraction& extraction, const std::vector<Vec3>& node_normals, const Context& context)
+      : mesh_(extraction.mesh),
+        nodes_(extraction.nodes),
+        node_normals_(node_normals),
+        context_(context) {}
+
+  void run(const Extraction& extraction) {
+    std::vector<Index> twisted = twisted_quads();
+    if (twisted.empty()) return;
+    around_ = vertex_faces(mesh_, context_);
+    hold(extraction);
+    for (const bool at_any_price : {false, true}) {
+      for (const int rings : {2, 3, 5}) {
+        // A mesh with more of them is too coarse for its surface: no need to try for minutes.
+        const std::size_t most = 50 + mesh_.faces.size() / 100;
+        twisted.resize(std::min(twisted.size(), most));
+        for (const Index f : twisted) mend(f, rings, at_any_price);
+        twisted = twisted_quads();
+        if (twisted.empty()) return;
+      }
+    }
+  }
+
+ private:
+  enum Stay : std::uint8_t { nowhere, on_line, always };
+
+  void hold(const Extraction& extraction) {
+    stays_.assign(mesh_.positions.size(), nowhere);
+    for (const LineEdge& edge : extraction.line_edges) stays_[edge.a] = stays_[edge.b] = on_line;
+    for (const auto& [a, b] : border_edges(mesh_, context_)) stays_[a] = stays_[b] = always;
+    for (const Index v : extraction.corners) stays_[v] = always;
+  }
+
+  std::span<const Index> face(Index f) const { return std::as_const(mesh_.faces)[f]; }
+
+  bool is_twisted(Index f) const {
+    if (mesh_.faces.degree(f) != 4) return false;
+    const Vec3 normal = area_vector(face(f), mesh_.positions).normalized();
+    return least_sine(face(f), mesh_.positions, normal) <= 0;
+  }
+
+  std::vector<Index> twisted_quads() const {
+    const auto look = [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+      for (auto f = static_cast<Index>(begin); f < end; ++f) {
+        if (is_twisted(f)) out.push_back(f);
+      }
+    };
+    return collect<Index>(mesh_.faces.size(), look, context_);
+  }
+
+  /// What a face is worth if either the surface or its neighbours say which side is up.
+  float quality(Index f) const {
+    Vec3 of_surface = Vec3::Zero(), of_neighbors = Vec3::Zero();
+    for (const Index v : face(f)) {
+      of_surface += node_normals_[nodes_[v]];
+      for (const Index g : around_[v]) of_neighbors += area_vector(face(g), mesh_.positions);
+    }
+    const Vec3 area = area_vector(face(f), mesh_.positions);
+    return std::max(face_quality(face(f), mesh_.positions, area, of_surface.normalized()),
+                    face_quality(face(f), mesh_.positions, area, of_neighbors.normalized()));
+  }
+
+  float lack(Index v) const {
+    constexpr float good = 0.2f;
+    float sum = 0;
+    for (const Index f : around_[v]) {
+      const float bad = std::max(0.0f, good - quality(f));
+      sum += bad * bad;
+    }
+    return sum;
+  }
+
+  struct Place {
+    std::vector<Index> faces;
+    std::vector<Index> vertices;  // those that may move
+    std::vector<Vec3> before;
+    float edge = 0;  // mean length
+  };
+
+  Place around(Index f, int rings, bool at_any_price) const {
+    Place place;
+    place.faces = with_rings(mesh_, around_, {f}, rings);
+    const Stay loosest = at_any_price ? on_line : nowhere;
+    float edges = 0;
+    for (const Index g : place.faces) {
+      Index last = face(g).back();
+      for (const Index v : face(g)) {
+        place.edge += (mesh_.positions[v] - mesh_.positions[std::exchange(last, v)]).norm();
+        ++edges;
+      }
+    }
+    place.edge /= edges;
+    for (const Index v : vertices_of(mesh_, place.faces)) {
+      const bool is_inside = std::ranges::includes(place.faces, around_[v]);
+      if (is_inside && stays_[v] <= loosest) place.vertices.push_back(v);
+    }
+    for (const Index v : place.vertices) place.before.push_back(mesh_.positions[v]);
+    return place;
+  }
+
+  std::size_t count_twisted(const Place& place) const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(place.faces, [&](Index f) { return is_twisted(f); }));
+  }
+
+  void mend(Index f, int rings, bool at_any_price) {
+    context_.check();
+    if (!is_twisted(f)) return;
+    const Place place = around(f, rings, at_any_price);
+    Eigen::AlignedBox3f box;
+    for (const Index g : place.faces) box.extend(face_box(mesh_, g));
+    box.extend(box.min() - Vec3::Constant(place.edge))
+        .extend(box.max() + Vec3::Constant(place.edge));
+    const std::size_t crossings = at_any_price ? 0 : count_crossings(mesh_, box, context_);
+    const std::size_t twisted = count_twisted(place);
+    move(place);
+    if (count_twisted(place) < twisted &&
+        (at_any_price || count_crossings(mesh_, box, context_) <= crossings)) {
+      return;
+    }
+    for (std::size_t k = 0; k < place.vertices.size(); ++k) {
+      mesh_.positions[place.vertices[k]] = place.before[k];
+    }
+  }
+
+  /// Each vertex to where the faces around it are best, by trying places (Hooke and Jeeves 1961).
+  void move(const Place& place) {
+    constexpr int sweeps = 40;
+    constexpr float first_step = 0.25f, last_step = 0.01f;
+    float step = first_step * place.edge;
+    for (int sweep = 0; sweep < sweeps && step > last_step * place.edge; ++sweep) {
+      bool any = false;
+      for (std::size_t k = 0; k < place.vertices.size(); ++k) {
+        any = try_around(place.vertices[k], place.before[k], step, place.edge) || any;
+      }
+      if (!any) step /= 2;
+    }
+  }
+
+  bool try_around(Index v, const Vec3& start, float step, float farthest) {
+    Vec3& position = mesh_.positions[v];
+    const Vec3 here = position;
+    Vec3 best = here;
+    float least = lack(v);
+    for (int direction = 0; direction < 27 && least > 0; ++direction) {
+      const Vec3 to(static_cast<float>(direction % 3 - 1),
+                    static_cast<float>(direction / 3 % 3 - 1),
+                    static_cast<float>(direction / 9 - 1));
+      position = here + step * to;
+      if ((position - start).norm() > farthest) continue;
+      if (const float left = lack(v); left < least) {
+        least = left;
+        best = position;
+      }
+    }
+    position = best;
+    return best != here;
+  }
+
+  Mesh& mesh_;
+  const std::vector<Index>& nodes_;
+  const std::vector<Vec3>& node_normals_;
+  const Context& context_;
+  VertexFaces around_;
+  std::vector<Stay> stays_;
+};
+
+}  // namespace
+
+void untwist(Extraction& extraction, const std::vector<Vec3>& node_normals,
+             const Context& context) {
+  Untwisting(extraction, node_normals, context).run(extraction);
+}
+
+}  // namespace meshgrain
