@@ -26,13 +26,14 @@ class Untwisting {
     std::vector<Index> twisted = twisted_quads();
     if (twisted.empty()) return;
     around_ = vertex_faces(mesh_, context_);
+    start_ = mesh_.positions;
     hold(extraction);
-    for (const bool at_any_price : {false, true}) {
+    for (const std::size_t price : prices) {
       for (const int rings : {2, 3, 5}) {
         // A mesh with more of them is too coarse for its surface: no need to try for minutes.
         const std::size_t most = 50 + mesh_.faces.size() / 100;
         twisted.resize(std::min(twisted.size(), most));
-        for (const Index f : twisted) mend(f, rings, at_any_price);
+        for (const Index f : twisted) mend(f, rings, price);
         twisted = twisted_quads();
         if (twisted.empty()) return;
       }
@@ -40,6 +41,9 @@ class Untwisting {
   }
 
  private:
+  /// How many more crossings may come of each quad that is mended.
+  static constexpr std::size_t prices[] = {0, 10, 1000};
+
   enum Stay : std::uint8_t { nowhere, on_line, always };
 
   void hold(const Extraction& extraction) {
@@ -95,10 +99,10 @@ class Untwisting {
     float edge = 0;  // mean length
   };
 
-  Place around(Index f, int rings, bool at_any_price) const {
+  Place around(Index f, int rings, std::size_t price) const {
     Place place;
     place.faces = with_rings(mesh_, around_, {f}, rings);
-    const Stay loosest = at_any_price ? on_line : nowhere;
+    const Stay loosest = price > 0 ? on_line : nowhere;
     float edges = 0;
     for (const Index g : place.faces) {
       Index last = face(g).back();
@@ -121,19 +125,20 @@ class Untwisting {
         std::ranges::count_if(place.faces, [&](Index f) { return is_twisted(f); }));
   }
 
-  void mend(Index f, int rings, bool at_any_price) {
+  void mend(Index f, int rings, std::size_t price) {
     context_.check();
     if (!is_twisted(f)) return;
-    const Place place = around(f, rings, at_any_price);
+    const Place place = around(f, rings, price);
     Eigen::AlignedBox3f box;
     for (const Index g : place.faces) box.extend(face_box(mesh_, g));
     box.extend(box.min() - Vec3::Constant(place.edge))
         .extend(box.max() + Vec3::Constant(place.edge));
-    const std::size_t crossings = at_any_price ? 0 : count_crossings(mesh_, box, context_);
+    const std::size_t crossings = count_crossings(mesh_, box, context_);
     const std::size_t twisted = count_twisted(place);
     move(place);
-    if (count_twisted(place) < twisted &&
-        (at_any_price || count_crossings(mesh_, box, context_) <= crossings)) {
+    const std::size_t left = count_twisted(place);
+    if (left < twisted &&
+        count_crossings(mesh_, box, context_) <= crossings + price * (twisted - left)) {
       return;
     }
     for (std::size_t k = 0; k < place.vertices.size(); ++k) {
@@ -148,14 +153,12 @@ class Untwisting {
     float step = first_step * place.edge;
     for (int sweep = 0; sweep < sweeps && step > last_step * place.edge; ++sweep) {
       bool any = false;
-      for (std::size_t k = 0; k < place.vertices.size(); ++k) {
-        any = try_around(place.vertices[k], place.before[k], step, place.edge) || any;
-      }
+      for (const Index v : place.vertices) any = try_around(v, step, place.edge) || any;
       if (!any) step /= 2;
     }
   }
 
-  bool try_around(Index v, const Vec3& start, float step, float farthest) {
+  bool try_around(Index v, float step, float farthest) {
     Vec3& position = mesh_.positions[v];
     const Vec3 here = position;
     Vec3 best = here;
@@ -165,7 +168,7 @@ class Untwisting {
                     static_cast<float>(direction / 3 % 3 - 1),
                     static_cast<float>(direction / 9 - 1));
       position = here + step * to;
-      if ((position - start).norm() > farthest) continue;
+      if ((position - start_[v]).norm() > farthest) continue;
       if (const float left = lack(v); left < least) {
         least = left;
         best = position;
@@ -180,6 +183,7 @@ class Untwisting {
   const std::vector<Vec3>& node_normals_;
   const Context& context_;
   VertexFaces around_;
+  std::vector<Vec3> start_;  // positions, before all
   std::vector<Stay> stays_;
 };
 
