@@ -9,6 +9,7 @@
 #include "remesh/memory.h"
 #include "remesh/notes.h"
 #include "remesh/pipeline.h"
+#include "remesh/target.h"
 #include "symmetry/remesh_symmetric.h"
 
 namespace meshgrain {
@@ -93,7 +94,7 @@ std::vector<RemeshResult> remesh_levels(Mesh input, std::span<const std::size_t>
     throw Error("levels need numbers of faces, all of them positive");
   }
   if (options.symmetry.any()) throw Error("several levels cannot be made symmetric");
-  if (options.fields != nullptr && !options.fields->position.points.empty()) {
+  if (has_given_positions(options)) {
     throw Error("given positions decide how fine a mesh is, and make but one");
   }
   options.edge_length = 0;

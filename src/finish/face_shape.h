@@ -43,6 +43,24 @@ inline float least_sine(std::span<const Index> face, const std::vector<Vec3>& po
   return least;
 }
 
+/// Of a quad: the least sine of its corners along its own normal.
+inline float scaled_jacobian(std::span<const Index> quad, const std::vector<Vec3>& positions) {
+  return least_sine(quad, positions, area_vector(quad, positions).normalized());
+}
+
+/// The mean length of the edges of some faces; one between two of them counts for both.
+inline float mean_edge(const Mesh& mesh, std::span<const Index> faces) {
+  float sum = 0, count = 0;
+  for (const Index f : faces) {
+    const auto face = mesh.faces[f];
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      sum += (mesh.positions[face[k]] - mesh.positions[face[(k + 1) % face.size()]]).norm();
+      ++count;
+    }
+  }
+  return sum / count;
+}
+
 /// What a face is worth: its least sine along its own normal, below -1 if that looks away from
 /// `upward`. `area`: its area vector.
 inline float face_quality(std::span<const Index> face, const std::vector<Vec3>& positions,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "finish/crossings.h"
+#include "finish/face_shape.h"
 #include "util/sort_unique.h"
 
 namespace meshgrain {
@@ -226,18 +227,6 @@ class Mending {
     return loosen(place, Who::free_and_at_bad);
   }
 
-  float mean_edge(const Place& place) const {
-    float sum = 0, count = 0;
-    for (const Index f : place.faces) {
-      const auto face = mesh_.faces[f];
-      for (std::size_t k = 0; k < face.size(); ++k) {
-        sum += (mesh_.positions[face[k]] - mesh_.positions[face[(k + 1) % face.size()]]).norm();
-        ++count;
-      }
-    }
-    return sum / count;
-  }
-
   /// Or is too fine to tell.
   bool surface_crosses(const Place& place) const {
     std::vector<Index> nodes;
@@ -286,7 +275,7 @@ class Mending {
   /// Returns whether that came to be.
   bool loosen(const Place& place, Who who) {
     constexpr int steps = 30;
-    const float farthest = mean_edge(place);
+    const float farthest = mean_edge(mesh_, place.faces);
     std::vector<Index> leaving;
     std::vector<std::size_t> where;  // in the place
     for (std::size_t k = 0; k < place.vertices.size(); ++k) {

@@ -17,17 +17,17 @@ namespace {
 class Untwisting {
  public:
   Untwisting(Extraction& extraction, const std::vector<Vec3>& node_normals, const Context& context)
-      : mesh_(extraction.mesh),
-        nodes_(extraction.nodes),
+      : extraction_(extraction),
+        mesh_(extraction.mesh),
         node_normals_(node_normals),
         context_(context) {}
 
-  void run(const Extraction& extraction) {
+  void run() {
     std::vector<Index> twisted = twisted_quads();
     if (twisted.empty()) return;
     around_ = vertex_faces(mesh_, context_);
     start_ = mesh_.positions;
-    hold(extraction);
+    hold();
     for (const std::size_t price : prices) {
       for (const int rings : {2, 3, 5}) {
         // A mesh with more of them is too coarse for its surface: no need to try for minutes.
@@ -46,19 +46,17 @@ class Untwisting {
 
   enum Stay : std::uint8_t { nowhere, on_line, always };
 
-  void hold(const Extraction& extraction) {
+  void hold() {
     stays_.assign(mesh_.positions.size(), nowhere);
-    for (const LineEdge& edge : extraction.line_edges) stays_[edge.a] = stays_[edge.b] = on_line;
+    for (const LineEdge& edge : extraction_.line_edges) stays_[edge.a] = stays_[edge.b] = on_line;
     for (const auto& [a, b] : border_edges(mesh_, context_)) stays_[a] = stays_[b] = always;
-    for (const Index v : extraction.corners) stays_[v] = always;
+    for (const Index v : extraction_.corners) stays_[v] = always;
   }
 
   std::span<const Index> face(Index f) const { return std::as_const(mesh_.faces)[f]; }
 
   bool is_twisted(Index f) const {
-    if (mesh_.faces.degree(f) != 4) return false;
-    const Vec3 normal = area_vector(face(f), mesh_.positions).normalized();
-    return least_sine(face(f), mesh_.positions, normal) <= 0;
+    return mesh_.faces.degree(f) == 4 && scaled_jacobian(face(f), mesh_.positions) <= 0;
   }
 
   std::vector<Index> twisted_quads() const {
@@ -74,7 +72,7 @@ class Untwisting {
   float quality(Index f) const {
     Vec3 of_surface = Vec3::Zero(), of_neighbors = Vec3::Zero();
     for (const Index v : face(f)) {
-      of_surface += node_normals_[nodes_[v]];
+      of_surface += node_normals_[extraction_.nodes[v]];
       for (const Index g : around_[v]) of_neighbors += area_vector(face(g), mesh_.positions);
     }
     const Vec3 area = area_vector(face(f), mesh_.positions);
@@ -103,15 +101,7 @@ class Untwisting {
     Place place;
     place.faces = with_rings(mesh_, around_, {f}, rings);
     const Stay loosest = price > 0 ? on_line : nowhere;
-    float edges = 0;
-    for (const Index g : place.faces) {
-      Index last = face(g).back();
-      for (const Index v : face(g)) {
-        place.edge += (mesh_.positions[v] - mesh_.positions[std::exchange(last, v)]).norm();
-        ++edges;
-      }
-    }
-    place.edge /= edges;
+    place.edge = mean_edge(mesh_, place.faces);
     for (const Index v : vertices_of(mesh_, place.faces)) {
       const bool is_inside = std::ranges::includes(place.faces, around_[v]);
       if (is_inside && stays_[v] <= loosest) place.vertices.push_back(v);
@@ -178,8 +168,8 @@ class Untwisting {
     return best != here;
   }
 
+  const Extraction& extraction_;
   Mesh& mesh_;
-  const std::vector<Index>& nodes_;
   const std::vector<Vec3>& node_normals_;
   const Context& context_;
   VertexFaces around_;
@@ -191,7 +181,7 @@ class Untwisting {
 
 void untwist(Extraction& extraction, const std::vector<Vec3>& node_normals,
              const Context& context) {
-  Untwisting(extraction, node_normals, context).run(extraction);
+  Untwisting(extraction, node_normals, context).run();
 }
 
 }  // namespace meshgrain

@@ -32,10 +32,6 @@ constexpr struct {
 // What is tried in all, and once more for so many faces.
 constexpr std::size_t tries = 20, faces_a_try = 4000;
 
-float scaled_jacobian(const Mesh& mesh, std::span<const Index> quad) {
-  return least_sine(quad, mesh.positions, area_vector(quad, mesh.positions).normalized());
-}
-
 class Closing {
  public:
   Closing(Extraction& whole, const Mesh& surface, const VertexFaces& around_surface,
@@ -74,7 +70,7 @@ class Closing {
     const Faces& faces = whole_.mesh.faces;
     for (Index f = 0; f < faces.size(); ++f) {
       if (faces.degree(f) != 4) continue;
-      const float quality = scaled_jacobian(whole_.mesh, faces[f]);
+      const float quality = scaled_jacobian(faces[f], whole_.mesh.positions);
       if (quality < good && !seen_.contains(corners(f))) found.push_back({quality, f});
     }
     std::ranges::sort(found);
@@ -109,7 +105,7 @@ class Closing {
       for (const Index v : face) upward += graph_.normals[part.nodes[v]];
       if (area_vector(face, mesh.positions).dot(upward) < 0) sum += turned_over;
       if (face.size() != 4) continue;
-      const float quality = scaled_jacobian(mesh, face);
+      const float quality = scaled_jacobian(face, mesh.positions);
       if (quality <= 0) sum += inverted;
       sum += std::max(0.0f, good - quality);
     }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "remesh/target.h"
+
 namespace meshgrain {
 
 std::vector<std::string> describe(const CleanReport& cleaned) {
@@ -35,8 +37,7 @@ std::vector<std::string> describe(const OrientReport& oriented) {
 void note_missed_count(RemeshResult& result, const RemeshOptions& options) {
   const bool by_faces = options.face_count > 0;
   const std::size_t asked = by_faces ? options.face_count : options.vertex_count;
-  const bool is_given = options.fields != nullptr && !options.fields->position.points.empty();
-  if (options.edge_length > 0 || asked == 0 || is_given) return;
+  if (options.edge_length > 0 || asked == 0 || has_given_positions(options)) return;
   const std::size_t made = by_faces ? result.mesh.faces.size() : result.mesh.positions.size();
   const double wanted = static_cast<double>(asked);
   const double off = static_cast<double>(made) - wanted;

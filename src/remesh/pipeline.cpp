@@ -273,7 +273,7 @@ void Pipeline::position_and_extract() {
 void Pipeline::find_faces() {
   constexpr int attempts = 8;
   const double tolerance = target_.tolerance();
-  const bool given = options_.fields != nullptr && !options_.fields->position.points.empty();
+  const bool given = has_given_positions(options_);
   double least_error = std::numeric_limits<double>::infinity();
   bool has_room = true;       // beside borders that stay
   bool is_changeable = true;  // whether faces can be taken away or added, as far as is known

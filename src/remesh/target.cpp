@@ -55,6 +55,10 @@ bool splits_only_once(const RemeshOptions& options) {
   return options.graph.nodes == GraphNodes::faces || !options.guides.empty();
 }
 
+bool has_given_positions(const RemeshOptions& options) {
+  return options.fields != nullptr && !options.fields->position.points.empty();
+}
+
 double Target::longest_input_edge(const RemeshOptions& options, double area,
                                   double mean_edge) const {
   const double length = edge_length(area);

@@ -13,6 +13,9 @@ int posy_of(OutputFaces faces);
 /// its faces, or guides are cut into it.
 bool splits_only_once(const RemeshOptions& options);
 
+/// Whether positions are given, which then decide how fine the mesh is.
+bool has_given_positions(const RemeshOptions& options);
+
 /// How fine the lattice of the position field must be for the mesh that is to be written.
 class Target {
  public:
