@@ -36,7 +36,7 @@ LocalSearch::LocalSearch(Extraction& extraction, const VertexFaces& around, Plac
       quality_(mesh_.faces.size()),
       normals_(mesh_.positions.size()),
       is_rival_(mesh_.faces.size(), 0),
-      batch_(mesh_.positions.size(), no_index),
+      batches_(mesh_, around_),
       tried_(mesh_.positions.size(), 0),
       moved_(mesh_.positions.size(), 0) {
   constexpr std::size_t grain = 1024;
@@ -58,7 +58,7 @@ LocalSearch::LocalSearch(Extraction& extraction, const VertexFaces& around, Plac
 }
 
 bool LocalSearch::improve(std::span<const Index> vertices, int sweeps, const Context& context) {
-  const auto apart = batches(vertices);
+  const auto apart = batches_(vertices);
   bool any = false;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     context.check();
@@ -83,27 +83,6 @@ bool LocalSearch::improve(std::span<const Index> vertices, int sweeps, const Con
     any = true;
   }
   return any;
-}
-
-/// Vertices that share no face with each other can be tried at once: each goes into the first batch
-/// where it shares none.
-std::vector<std::vector<Index>> LocalSearch::batches(std::span<const Index> vertices) {
-  std::vector<std::vector<Index>> result;
-  std::vector<std::uint8_t> taken;
-  for (const Index v : vertices) {
-    taken.assign(result.size() + 1, 0);
-    for (const Index f : around_[v]) {
-      for (const Index w : std::as_const(mesh_.faces)[f]) {
-        if (batch_[w] != no_index) taken[batch_[w]] = 1;
-      }
-    }
-    const auto first = std::find(taken.begin(), taken.end(), 0) - taken.begin();
-    batch_[v] = static_cast<Index>(first);
-    if (batch_[v] == result.size()) result.emplace_back();
-    result[batch_[v]].push_back(v);
-  }
-  for (const Index v : vertices) batch_[v] = no_index;
-  return result;
 }
 
 void LocalSearch::keep_apart(std::vector<Index> faces) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "finish/placement.h"
+#include "finish/vertex_batches.h"
 #include "mesh/vertex_faces.h"
 #include "meshgrain/context.h"
 #include "meshgrain/extract.h"
@@ -68,7 +69,6 @@ class LocalSearch {
     std::vector<Rival> near;
   };
 
-  std::vector<std::vector<Index>> batches(std::span<const Index> vertices);
   bool has_news(Index v) const;
   bool improve(Index v);
   float first_step(Index v) const;
@@ -90,9 +90,9 @@ class LocalSearch {
   std::vector<float> quality_;  // of each face
   std::vector<Vec3> normals_;   // of the surface, where each vertex is
   float mean_area_ = 0;
-  std::vector<Index> rivals_;                 // see keep_apart()
-  std::vector<std::uint8_t> is_rival_;        // of each face
-  std::vector<Index> batch_;                  // of each vertex, while batches() runs
+  std::vector<Index> rivals_;           // see keep_apart()
+  std::vector<std::uint8_t> is_rival_;  // of each face
+  VertexBatches batches_;
   std::uint32_t now_ = 0;                     // counts batches and moves
   std::vector<std::uint32_t> tried_, moved_;  // when each vertex last was
 };

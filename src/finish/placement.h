@@ -51,6 +51,14 @@ class Placement {
   /// Whether it may go anywhere on the surface.
   bool is_free(std::size_t v) const { return rails_.is_free(v) && !is_tethered(v); }
 
+  /// Whether a free vertex may be at a point on the surface or near to it: its tether reaches so
+  /// far.
+  bool allows(const Vec3& p, std::size_t v) const {
+    if (!is_tethered(v)) return true;
+    const Tether& tether = tethers_[tether_[v]];
+    return (p - tether.end).norm() <= tether.radius;
+  }
+
   /// Moves v to a point of the surface, near a node of it; from then on it stays within `radius` of
   /// `end`, or as near as it then is.
   void tether(std::size_t v, const Vec3& p, Index node, const Vec3& end, float radius);

@@ -14,6 +14,7 @@
 #include "finish/fit_to_surface.h"
 #include "finish/local_search.h"
 #include "finish/mend_places.h"
+#include "finish/own_side.h"
 #include "finish/placement.h"
 #include "finish/regular_polygon.h"
 #include "finish/unfold.h"
@@ -95,6 +96,9 @@ class Smoother {
 
   /// Brings the faces nearer to the surface, with vertices that go off it.
   void fit_faces();
+
+  /// Brings faces off other sides of the surface, where it is thin.
+  void keep_to_own_side(const Mesh& surface);
 
  private:
   template <typename Body>
@@ -329,6 +333,13 @@ void Smoother::fit_faces() {
   if (options_.fit > 0) fit_to_surface(extraction_, around_, placement_, options_.fit, context_);
 }
 
+void Smoother::keep_to_own_side(const Mesh& surface) {
+  if (surface.is_point_cloud() || options_.is_part) return;
+  look_up_sizes();
+  const PolygonFit fit{mean_side(mesh_, sizes_, context_), 1, sizes_};
+  meshgrain::keep_to_own_side(extraction_, around_, placement_, surface, fit, context_);
+}
+
 }  // namespace
 
 void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
@@ -360,6 +371,7 @@ void smooth(Extraction& extraction, const Mesh& surface, const VertexFaces& arou
   smoother.iterate(iterations - done, true);
   smoother.mend();
   smoother.fit_faces();
+  smoother.keep_to_own_side(surface);
 }
 
 }  // namespace meshgrain

@@ -9,7 +9,7 @@
 namespace meshgrain {
 namespace {
 
-constexpr Index leaf_size = 4;
+constexpr Index leaf_size = 2;
 
 double squared_distance_to_box(const Eigen::Vector3d& p, const Vec3& low, const Vec3& high) {
   const Eigen::Vector3d below = low.cast<double>() - p, above = p - high.cast<double>();

@@ -1,0 +1,321 @@
+#include "finish/own_side.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "field/rosy.h"
+#include "finish/box_cells.h"
+#include "finish/crossings.h"
+#include "finish/face_shape.h"
+#include "finish/near_surface.h"
+#include "finish/vertex_batches.h"
+#include "util/collect.h"
+#include "util/sort_unique.h"
+
+namespace meshgrain {
+namespace {
+
+class OwnSide {
+ public:
+  OwnSide(Extraction& extraction, const VertexFaces& around, Placement& placement,
+          const PolygonFit& fit, const Context& context)
+      : mesh_(extraction.mesh),
+        around_(around),
+        placement_(placement),
+        fit_(fit),
+        context_(context) {}
+
+  void run(const Mesh& surface) {
+    const std::vector<Index> bent = bent_faces();
+    if (bent.empty()) return;
+    const BoxCells cells = cells_around(bent);
+    const NearSurface near(surface, cells, context_);
+    near_ = &near;
+    movable_ = vertices_of(mesh_, bent);
+    std::erase_if(movable_, [&](Index v) { return placement_.is_on_line(v); });
+    before_ = mesh_.positions;
+    turned_.assign(mesh_.faces.size(), 0);
+    const std::vector<Index> in_cells = faces_in(cells);
+    VertexBatches batches(mesh_, around_);
+    std::vector<Index> watched = bent;
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+      context_.check();
+      shift_samples(sweep);
+      measure(watched);
+      const std::vector<Index> vertices = vertices_of_turned(watched);
+      const std::vector<Vec3> last = mesh_.positions;
+      for (const std::vector<Index>& batch : batches(vertices)) {
+        context_.for_ranges(batch.size(), 4, [&](std::size_t begin, std::size_t end) {
+          for (std::size_t k = begin; k < end; ++k) improve(batch[k]);
+        });
+      }
+      if (mesh_.positions != last) undo_crossings(in_cells, last);
+      for (const Index v : vertices) {
+        watched.insert(watched.end(), around_[v].begin(), around_[v].end());
+      }
+      sort_unique(watched);
+    }
+  }
+
+ private:
+  // Each with the samples elsewhere in the faces: what is between them does not stay unseen.
+  static constexpr int sweeps = 5;
+  static constexpr int many_samples = 2, few_samples = 1;  // of a triangle, squared
+
+  // What a face lacks, in all of its area on the wrong side.
+  static constexpr float for_distance = 0.6f;    // the mean, in lengths of a side
+  static constexpr float for_unevenness = 0.2f;  // the square of how much its area is off
+  static constexpr float for_corners = 0.2f;     // the squares of how much their cosines are off
+  static constexpr float least_gain = 1e-3f;
+
+  static constexpr float unlimited = std::numeric_limits<float>::infinity();
+
+  // In lengths of a side.
+  static constexpr float first_step = 0.15f, last_step = 0.05f, farthest = 0.5f;
+  static constexpr float reach = 2;  // of what is looked at around a doubtful face
+
+  std::span<const Index> face(Index f) const { return std::as_const(mesh_.faces)[f]; }
+
+  float side(Index v) const { return fit_.side * fit_.relative_size[v]; }
+
+  /// Faces that look elsewhere than the surface does at one of their corners: most of those with
+  /// parts on the wrong side are among them, and they are found at once.
+  std::vector<Index> bent_faces() const {
+    constexpr float bent = 0.6f;  // cosine
+    const auto look = [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+      for (auto f = static_cast<Index>(begin); f < end; ++f) {
+        const Vec3 normal = area_vector(face(f), mesh_.positions).stableNormalized();
+        const auto is_bent = [&](Index v) { return normal.dot(placement_.normal(v)) < bent; };
+        if (std::ranges::any_of(face(f), is_bent)) out.push_back(f);
+      }
+    };
+    return collect<Index>(mesh_.faces.size(), look, context_);
+  }
+
+  BoxCells cells_around(const std::vector<Index>& faces) const {
+    std::vector<Eigen::AlignedBox3f> boxes;
+    for (const Index f : faces) {
+      Eigen::AlignedBox3f box = face_box(mesh_, f);
+      const Vec3 margin = Vec3::Constant(reach * side(face(f)[0]));
+      boxes.emplace_back(box.min() - margin, box.max() + margin);
+    }
+    return {boxes, fit_.side};
+  }
+
+  /// To the next of a sequence of low discrepancy (the additive recurrence R2).
+  void shift_samples(int sweep) {
+    constexpr float along = 0.7548777f, across = 0.5698403f;
+    const auto n = static_cast<float>(sweep);
+    shift_ = {1 / 3.0f + n * along, 1 / 3.0f + n * across};
+    for (float& shift : shift_) shift -= std::floor(shift);
+  }
+
+  void measure(const std::vector<Index>& faces) {
+    context_.for_ranges(faces.size(), 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k)
+        lack_of_place(faces[k], many_samples, unlimited, turned_[faces[k]]);
+    });
+  }
+
+  std::vector<Index> vertices_of_turned(const std::vector<Index>& faces) const {
+    std::vector<Index> turned;
+    std::ranges::copy_if(faces, std::back_inserter(turned),
+                         [&](Index f) { return turned_[f] > 0; });
+    std::vector<Index> vertices = vertices_of(mesh_, turned);
+    std::erase_if(vertices, [&](Index v) { return !std::ranges::binary_search(movable_, v); });
+    return vertices;
+  }
+
+  float wanted_area(Index f) const {
+    const auto n = static_cast<float>(face(f).size());
+    float length = 0;
+    for (const Index v : face(f)) length += side(v) / n;
+    return length * length * n / (4 * std::tan(std::numbers::pi_v<float> / n));
+  }
+
+  float lack_of_shape(Index f) const {
+    const auto corners = face(f);
+    const std::size_t n = corners.size();
+    const float off = area_vector(corners, mesh_.positions).norm() / wanted_area(f) - 1;
+    float sum = for_unevenness * off * off;
+    const float regular = -std::cos(2 * std::numbers::pi_v<float> / static_cast<float>(n));
+    for (std::size_t k = 0; k < n; ++k) {
+      const Vec3& p = mesh_.positions[corners[k]];
+      const Vec3 ahead = mesh_.positions[corners[(k + 1) % n]] - p;
+      const Vec3 back = mesh_.positions[corners[(k + n - 1) % n]] - p;
+      const float lengths = ahead.norm() * back.norm();
+      const float cosine = lengths > 0 ? ahead.dot(back) / lengths : 1;
+      sum += for_corners * (cosine - regular) * (cosine - regular);
+    }
+    return sum;
+  }
+
+  /// Of its distance, and of its area on the wrong side: that goes into `turned`. A face as most
+  /// programs draw it, in triangles around its first corner. From `limit` on it need not be exact.
+  float lack_of_place(Index f, int samples_a_side, float limit, float& turned) const {
+    const auto corners = face(f);
+    const Vec3& a = mesh_.positions[corners[0]];
+    const float length = side(corners[0]), area = wanted_area(f);
+    const auto n = static_cast<float>(samples_a_side);
+    turned = 0;
+    float sum = 0;
+    Vec3 last = a;
+    float near = length;  // of `last`, to the surface
+    for (std::size_t k = 2; k < corners.size(); ++k) {
+      const Vec3 b = mesh_.positions[corners[k - 1]] - a, c = mesh_.positions[corners[k]] - a;
+      const Vec3 normal = b.cross(c);
+      const float share = normal.norm() / (2 * area * (n * n));
+      for (int i = 0; i < samples_a_side; ++i) {
+        for (int j = 0; j < samples_a_side; ++j) {
+          float x = (static_cast<float>(i) + shift_[0]) / n;
+          float y = (static_cast<float>(j) + shift_[1]) / n;
+          if (x + y > 1) x = 1 - x, y = 1 - y;
+          const Vec3 p = a + x * b + y * c;
+          const auto found =
+              near_->nearest(p, std::min(length, 1.01f * (near + (p - last).norm())));
+          if (found.normal.dot(normal) < 0) turned += share;
+          sum += share * for_distance * found.distance / length;
+          last = p;
+          near = found.distance;
+          if (sum + turned > limit) return sum + turned;
+        }
+      }
+    }
+    return sum + turned;
+  }
+
+  float quality(Index f) const {
+    return least_sine(face(f), mesh_.positions,
+                      area_vector(face(f), mesh_.positions).stableNormalized());
+  }
+
+  /// What stays the same while a vertex is tried at several places, and what is known of the best.
+  struct Star {
+    std::vector<float> least_quality;  // of each face
+    std::vector<float> turned;         // of each, at the best place
+    float lack = 0;                    // of all
+  };
+
+  /// Of the faces around a vertex; from `limit` on it need not be exact.
+  float lack(Index v, float limit, std::vector<float>& turned) const {
+    float sum = 0;
+    for (const Index f : around_[v]) sum += lack_of_shape(f);
+    for (std::size_t k = 0; k < around_[v].size() && sum < limit; ++k) {
+      const Index f = around_[v][k];
+      sum += lack_of_place(f, turned_[f] > 0 ? many_samples : few_samples, limit - sum, turned[k]);
+    }
+    return sum;
+  }
+
+  /// Tries places for a vertex, off the surface and along it (Hooke and Jeeves 1961).
+  void improve(Index v) {
+    const auto faces = around_[v];
+    if (std::ranges::none_of(faces, [&](Index f) { return turned_[f] > 0; })) return;
+    Star star{{}, std::vector<float>(faces.size()), 0};
+    // As good as is seen nowhere, or as it was.
+    for (const Index f : faces) {
+      const auto n = static_cast<float>(face(f).size());
+      const float good = 0.72f * std::sin(2 * std::numbers::pi_v<float> / n);
+      star.least_quality.push_back(std::min(quality(f), good));
+    }
+    star.lack = lack(v, unlimited, star.turned);
+    Vec3 normal = Vec3::Zero();
+    for (const Index f : faces) normal += area_vector(face(f), mesh_.positions);
+    if (normal.isZero(0)) return;
+    normal.normalize();
+    const Vec3 x = any_tangent(normal), y = normal.cross(x);
+    const Vec3 ways[] = {normal, -normal, x, -x, y, -y};
+    constexpr int rounds = 3;
+    for (float step = first_step; step >= 0.99f * last_step; step /= 3) {
+      bool moved = true;
+      for (int round = 0; round < rounds && moved; ++round) {
+        moved = false;
+        for (const Vec3& way : ways) moved = attempt(v, step * side(v) * way, star) || moved;
+      }
+    }
+    for (std::size_t k = 0; k < faces.size(); ++k) turned_[faces[k]] = star.turned[k];
+  }
+
+  bool attempt(Index v, const Vec3& way, Star& star) {
+    Vec3& position = mesh_.positions[v];
+    const Vec3 here = position;
+    position += way;
+    if ((position - before_[v]).norm() <= farthest * side(v) && placement_.allows(position, v) &&
+        keeps_shapes(v, star)) {
+      std::vector<float> turned(star.turned.size());
+      const float left = lack(v, star.lack - least_gain, turned);
+      if (left < star.lack - least_gain) {
+        star.lack = left;
+        star.turned = std::move(turned);
+        return true;
+      }
+    }
+    position = here;
+    return false;
+  }
+
+  bool keeps_shapes(Index v, const Star& star) const {
+    for (std::size_t k = 0; k < around_[v].size(); ++k) {
+      if (quality(around_[v][k]) < star.least_quality[k]) return false;
+    }
+    return true;
+  }
+
+  std::vector<Index> faces_in(const BoxCells& cells) const {
+    const auto look = [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+      for (auto f = static_cast<Index>(begin); f < end; ++f) {
+        if (cells.touches(face_box(mesh_, f))) out.push_back(f);
+      }
+    };
+    return collect<Index>(mesh_.faces.size(), look, context_);
+  }
+
+  /// Puts the vertices of faces back to where they were last if these pass through others, and did
+  /// not then.
+  void undo_crossings(const std::vector<Index>& faces, const std::vector<Vec3>& last) {
+    Mesh near;
+    near.positions = last;
+    for (const Index f : faces) near.faces.push_back(face(f));
+    const auto inherent = find_crossings(near, context_);
+    near.positions.swap(mesh_.positions);
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (const auto& pair : find_crossings(near, context_)) {
+        if (std::ranges::binary_search(inherent, pair)) continue;
+        for (const Index f : pair) {
+          for (const Index v : std::as_const(near.faces)[f]) {
+            changed = changed || near.positions[v] != last[v];
+            near.positions[v] = last[v];
+          }
+        }
+      }
+    }
+    mesh_.positions = std::move(near.positions);
+  }
+
+  Mesh& mesh_;
+  const VertexFaces& around_;
+  const Placement& placement_;
+  const PolygonFit& fit_;
+  const Context& context_;
+  const NearSurface* near_ = nullptr;
+  std::vector<Index> movable_;           // the free vertices of bent faces
+  std::vector<Vec3> before_;             // positions
+  std::vector<float> turned_;            // of each face, in wanted areas
+  std::array<float, 2> shift_ = {0, 0};  // of the samples
+};
+
+}  // namespace
+
+void keep_to_own_side(Extraction& extraction, const VertexFaces& around, Placement& placement,
+                      const Mesh& surface, const PolygonFit& fit, const Context& context) {
+  OwnSide(extraction, around, placement, fit, context).run(surface);
+}
+
+}  // namespace meshgrain
