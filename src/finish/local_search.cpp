@@ -162,17 +162,18 @@ float LocalSearch::quality_among_neighbors(Index f) const {
 }
 
 float LocalSearch::shape_lack(Index v, std::span<const Upward> upward, float limit) const {
-  constexpr float good = 0.75f;
-  constexpr float against_cutting_off = 300;  // before the shapes of faces
+  constexpr float good = 0.75f;               // of what is best
+  constexpr float against_cutting_off = 450;  // before the shapes of faces
   float sum = against_cutting_off * static_cast<float>(placement_.cut_off(v));
   for (std::size_t k = 0; k < upward.size() && sum < limit; ++k) {
     const Index f = around_[v][k];
     const auto face = std::as_const(mesh_.faces)[f];
     const Vec3 area = area_vector(face, mesh_.positions);
     const float q = quality_here(f, area, upward[k]);
-    const float irregular = std::max(0.0f, best_quality(face.size()) - q);
-    const float bad = std::max(0.0f, good - q);
-    sum += irregular * irregular + 10 * bad * bad;
+    const float best = best_quality(face.size());
+    const float irregular = std::max(0.0f, best - q);
+    const float bad = std::max(0.0f, good * best - q);
+    sum += irregular * irregular + 15 * bad * bad;
     const float uneven = std::log(std::max(area.norm() / mean_area_, 1e-3f));
     sum += 0.1f * uneven * uneven;
   }
