@@ -102,10 +102,10 @@ TEST(BoxCells, HoldWhatIsInTheBoxes) {
   EXPECT_FALSE(BoxCells({}, 1).touches({Vec3::Zero(), Vec3::Ones()}));
 }
 
-/// Two sheets back to back, and a third beyond the cells.
-TEST(NearSurface, SeesEverySideInItsCells) {
+/// Two sheets back to back.
+TEST(NearSurface, SeesEverySide) {
   Mesh surface;
-  for (const float z : {0.0f, -0.1f, 5.0f}) {
+  for (const float z : {0.0f, -0.1f}) {
     const auto first = static_cast<Index>(surface.positions.size());
     for (const auto& [x, y] : {std::pair(-1.0f, -1.0f), {1.0f, -1.0f}, {0.0f, 1.0f}}) {
       surface.positions.push_back(Vec3(x, y, z));
@@ -113,8 +113,7 @@ TEST(NearSurface, SeesEverySideInItsCells) {
     const Index second = first + (z < 0 ? 2 : 1);
     surface.faces.push_back({first, second, 2 * first + 3 - second});
   }
-  const Eigen::AlignedBox3f box(Vec3::Constant(-1.5f), Vec3::Constant(1.5f));
-  const NearSurface near(surface, BoxCells({&box, 1}, 3), Context());
+  const NearSurface near(surface);
   const auto above = near.nearest(Vec3(0, 0, -0.04f), 1);
   EXPECT_FLOAT_EQ(above.distance, 0.04f);
   EXPECT_EQ(above.normal, Vec3::UnitZ());
@@ -124,7 +123,6 @@ TEST(NearSurface, SeesEverySideInItsCells) {
   const auto none = near.nearest(Vec3(0, 0, 0.5f), 0.4f);
   EXPECT_EQ(none.distance, 0.4f);
   EXPECT_TRUE(none.normal.isZero());
-  EXPECT_EQ(near.nearest(Vec3(0, 0, 4.9f), 1).distance, 1);
 }
 
 TEST(VertexBatches, ShareNoFace) {

@@ -1,18 +1,18 @@
 #pragma once
 
-#include "finish/box_cells.h"
 #include "measure/bvh.h"
-#include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
 
 namespace meshgrain {
 
-/// What of a surface lies in the cells of a few places, for finding the nearest of all of its sides
-/// there. A Projector knows one side alone, but needs no tree.
+/// A part of a surface, for finding the nearest of all of its sides there. A Projector knows one
+/// side alone, but needs no tree.
 class NearSurface {
  public:
-  /// `surface`: of triangles smaller than the cells.
-  NearSurface(const Mesh& surface, const BoxCells& cells, const Context& context);
+  /// `part`: of triangles.
+  explicit NearSurface(Mesh part);
+  NearSurface(const NearSurface&) = delete;
+  NearSurface& operator=(const NearSurface&) = delete;
 
   struct Nearest {
     float distance;

@@ -11,6 +11,7 @@
 
 #include "field/rosy.h"
 #include "finish/box_cells.h"
+#include "finish/crossing_guard.h"
 #include "finish/crossings.h"
 #include "finish/face_shape.h"
 #include "finish/near_surface.h"
@@ -23,39 +24,32 @@ namespace {
 
 class OwnSide {
  public:
-  OwnSide(Extraction& extraction, const VertexFaces& around, Placement& placement,
-          const PolygonFit& fit, const Context& context)
-      : mesh_(extraction.mesh),
-        around_(around),
-        placement_(placement),
-        fit_(fit),
-        context_(context) {}
+  OwnSide(Mesh& mesh, const VertexFaces& around, const Placement& placement, const PolygonFit& fit,
+          const Context& context)
+      : mesh_(mesh), around_(around), placement_(placement), fit_(fit), context_(context) {}
 
-  void run(const Mesh& surface) {
-    const std::vector<Index> bent = bent_faces();
-    if (bent.empty()) return;
-    const BoxCells cells = cells_around(bent);
-    const NearSurface near(surface, cells, context_);
+  void run(const std::vector<Vec3>& normals) {
+    std::vector<Index> watched = turned_faces(bent_faces(normals));
+    if (watched.empty()) return;
+    const BoxCells cells = cells_around(watched, reach);
+    const NearSurface near(placement_.projector().cut_out(cells, context_));
     near_ = &near;
-    movable_ = vertices_of(mesh_, bent);
+    movable_ = vertices_of(mesh_, with_rings(mesh_, around_, watched, 1));
     std::erase_if(movable_, [&](Index v) { return placement_.is_on_line(v); });
     before_ = mesh_.positions;
-    turned_.assign(mesh_.faces.size(), 0);
-    const std::vector<Index> in_cells = faces_in(cells);
+    CrossingGuard guard(mesh_, faces_in(cells), context_);
     VertexBatches batches(mesh_, around_);
-    std::vector<Index> watched = bent;
     for (int sweep = 0; sweep < sweeps; ++sweep) {
       context_.check();
       shift_samples(sweep);
-      measure(watched);
+      measure(watched, many_samples);
       const std::vector<Index> vertices = vertices_of_turned(watched);
-      const std::vector<Vec3> last = mesh_.positions;
       for (const std::vector<Index>& batch : batches(vertices)) {
         context_.for_ranges(batch.size(), 4, [&](std::size_t begin, std::size_t end) {
           for (std::size_t k = begin; k < end; ++k) improve(batch[k]);
         });
       }
-      if (mesh_.positions != last) undo_crossings(in_cells, last);
+      guard.undo_new();
       for (const Index v : vertices) {
         watched.insert(watched.end(), around_[v].begin(), around_[v].end());
       }
@@ -66,7 +60,8 @@ class OwnSide {
  private:
   // Each with the samples elsewhere in the faces: what is between them does not stay unseen.
   static constexpr int sweeps = 5;
-  static constexpr int many_samples = 2, few_samples = 1;  // of a triangle, squared
+  static constexpr int most_samples = 3, many_samples = 2,
+                       few_samples = 1;  // of a triangle, squared
 
   // What a face lacks, in all of its area on the wrong side.
   static constexpr float for_distance = 0.6f;    // the mean, in lengths of a side
@@ -74,11 +69,15 @@ class OwnSide {
   static constexpr float for_corners = 0.2f;     // the squares of how much their cosines are off
   static constexpr float least_gain = 1e-3f;
 
-  static constexpr float unlimited = std::numeric_limits<float>::infinity();
-
   // In lengths of a side.
   static constexpr float first_step = 0.15f, last_step = 0.05f, farthest = 0.5f;
-  static constexpr float reach = 2;  // of what is looked at around a doubtful face
+  static constexpr float reach = 2;                // of what is looked at around a turned face
+  static constexpr float reach_of_samples = 0.5f;  // around one that is bent
+
+  struct Sample {
+    float distance;  // from the surface, in lengths of a side
+    bool is_turned;
+  };
 
   std::span<const Index> face(Index f) const { return std::as_const(mesh_.faces)[f]; }
 
@@ -86,26 +85,42 @@ class OwnSide {
 
   /// Faces that look elsewhere than the surface does at one of their corners: most of those with
   /// parts on the wrong side are among them, and they are found at once.
-  std::vector<Index> bent_faces() const {
+  std::vector<Index> bent_faces(const std::vector<Vec3>& normals) const {
     constexpr float bent = 0.6f;  // cosine
     const auto look = [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
       for (auto f = static_cast<Index>(begin); f < end; ++f) {
         const Vec3 normal = area_vector(face(f), mesh_.positions).stableNormalized();
-        const auto is_bent = [&](Index v) { return normal.dot(placement_.normal(v)) < bent; };
+        const auto is_bent = [&](Index v) { return normal.dot(normals[v]) < bent; };
         if (std::ranges::any_of(face(f), is_bent)) out.push_back(f);
       }
     };
     return collect<Index>(mesh_.faces.size(), look, context_);
   }
 
-  BoxCells cells_around(const std::vector<Index>& faces) const {
+  /// Of some faces, those with a sample on the wrong side.
+  std::vector<Index> turned_faces(const std::vector<Index>& faces) {
+    if (faces.empty()) return {};
+    turned_.assign(mesh_.faces.size(), 0);
+    const BoxCells cells = cells_around(faces, reach_of_samples);
+    const NearSurface near(placement_.projector().cut_out(cells, context_));
+    near_ = &near;
+    shift_samples(0);
+    measure(faces, most_samples);
+    near_ = nullptr;
+    std::vector<Index> turned;
+    std::ranges::copy_if(faces, std::back_inserter(turned),
+                         [&](Index f) { return turned_[f] > 0; });
+    return turned;
+  }
+
+  BoxCells cells_around(const std::vector<Index>& faces, float margins) const {
     std::vector<Eigen::AlignedBox3f> boxes;
     for (const Index f : faces) {
       Eigen::AlignedBox3f box = face_box(mesh_, f);
-      const Vec3 margin = Vec3::Constant(reach * side(face(f)[0]));
+      const Vec3 margin = Vec3::Constant(margins * side(face(f)[0]));
       boxes.emplace_back(box.min() - margin, box.max() + margin);
     }
-    return {boxes, fit_.side};
+    return {boxes, 0.5f * fit_.side};
   }
 
   /// To the next of a sequence of low discrepancy (the additive recurrence R2).
@@ -116,10 +131,17 @@ class OwnSide {
     for (float& shift : shift_) shift -= std::floor(shift);
   }
 
-  void measure(const std::vector<Index>& faces) {
+  void measure(std::span<const Index> faces, int samples_a_side) {
     context_.for_ranges(faces.size(), 16, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k)
-        lack_of_place(faces[k], many_samples, unlimited, turned_[faces[k]]);
+      for (const Index f : faces.subspan(begin, end - begin)) measure(f, samples_a_side);
+    });
+  }
+
+  void measure(Index f, int samples_a_side) {
+    turned_[f] = 0;
+    for_samples(f, no_index, samples_a_side, [&](float share, const Sample& sample) {
+      if (sample.is_turned) turned_[f] += share;
+      return true;
     });
   }
 
@@ -156,18 +178,22 @@ class OwnSide {
     return sum;
   }
 
-  /// Of its distance, and of its area on the wrong side: that goes into `turned`. A face as most
-  /// programs draw it, in triangles around its first corner. From `limit` on it need not be exact.
-  float lack_of_place(Index f, int samples_a_side, float limit, float& turned) const {
+  /// Calls use(share, found) for samples of a face as most programs draw it, in triangles around
+  /// its first corner, while it returns true: with the share of a face's wanted area that each
+  /// stands for, and what of the surface is nearest to it. Only those that move with a vertex, if
+  /// one is told.
+  template <typename Use>
+  void for_samples(Index f, Index moving, int samples_a_side, const Use& use) const {
     const auto corners = face(f);
     const Vec3& a = mesh_.positions[corners[0]];
     const float length = side(corners[0]), area = wanted_area(f);
     const auto n = static_cast<float>(samples_a_side);
-    turned = 0;
-    float sum = 0;
     Vec3 last = a;
     float near = length;  // of `last`, to the surface
     for (std::size_t k = 2; k < corners.size(); ++k) {
+      const bool moves = moving == no_index || moving == corners[0] || moving == corners[k - 1] ||
+                         moving == corners[k];
+      if (!moves) continue;
       const Vec3 b = mesh_.positions[corners[k - 1]] - a, c = mesh_.positions[corners[k]] - a;
       const Vec3 normal = b.cross(c);
       const float share = normal.norm() / (2 * area * (n * n));
@@ -177,17 +203,14 @@ class OwnSide {
           float y = (static_cast<float>(j) + shift_[1]) / n;
           if (x + y > 1) x = 1 - x, y = 1 - y;
           const Vec3 p = a + x * b + y * c;
-          const auto found =
-              near_->nearest(p, std::min(length, 1.01f * (near + (p - last).norm())));
-          if (found.normal.dot(normal) < 0) turned += share;
-          sum += share * for_distance * found.distance / length;
+          const float limit = std::min(length, 1.01f * (near + (p - last).norm()));
+          const auto [distance, upward] = near_->nearest(p, limit);
+          if (!use(share, Sample{distance / length, upward.dot(normal) < 0})) return;
           last = p;
-          near = found.distance;
-          if (sum + turned > limit) return sum + turned;
+          near = distance;
         }
       }
     }
-    return sum + turned;
   }
 
   float quality(Index f) const {
@@ -195,20 +218,17 @@ class OwnSide {
                       area_vector(face(f), mesh_.positions).stableNormalized());
   }
 
-  /// What stays the same while a vertex is tried at several places, and what is known of the best.
-  struct Star {
-    std::vector<float> least_quality;  // of each face
-    std::vector<float> turned;         // of each, at the best place
-    float lack = 0;                    // of all
-  };
-
-  /// Of the faces around a vertex; from `limit` on it need not be exact.
-  float lack(Index v, float limit, std::vector<float>& turned) const {
+  /// Of the faces around a vertex, as far as it depends on that; from `limit` on it need not be
+  /// exact.
+  float lack(Index v, float limit) const {
     float sum = 0;
     for (const Index f : around_[v]) sum += lack_of_shape(f);
-    for (std::size_t k = 0; k < around_[v].size() && sum < limit; ++k) {
-      const Index f = around_[v][k];
-      sum += lack_of_place(f, turned_[f] > 0 ? many_samples : few_samples, limit - sum, turned[k]);
+    for (const Index f : around_[v]) {
+      const int samples = turned_[f] > 0 ? many_samples : few_samples;
+      for_samples(f, v, samples, [&](float share, const Sample& sample) {
+        sum += share * (for_distance * sample.distance + (sample.is_turned ? 1.0f : 0.0f));
+        return sum < limit;
+      });
     }
     return sum;
   }
@@ -217,42 +237,39 @@ class OwnSide {
   void improve(Index v) {
     const auto faces = around_[v];
     if (std::ranges::none_of(faces, [&](Index f) { return turned_[f] > 0; })) return;
-    Star star{{}, std::vector<float>(faces.size()), 0};
-    // As good as is seen nowhere, or as it was.
-    for (const Index f : faces) {
-      const auto n = static_cast<float>(face(f).size());
-      const float good = 0.72f * std::sin(2 * std::numbers::pi_v<float> / n);
-      star.least_quality.push_back(std::min(quality(f), good));
-    }
-    star.lack = lack(v, unlimited, star.turned);
     Vec3 normal = Vec3::Zero();
     for (const Index f : faces) normal += area_vector(face(f), mesh_.positions);
     if (normal.isZero(0)) return;
     normal.normalize();
     const Vec3 x = any_tangent(normal), y = normal.cross(x);
     const Vec3 ways[] = {normal, -normal, x, -x, y, -y};
+    const Vec3 here = mesh_.positions[v];
+    const std::vector<float> qualities = least_qualities(v);
+    float least = lack(v, std::numeric_limits<float>::infinity());
     constexpr int rounds = 3;
     for (float step = first_step; step >= 0.99f * last_step; step /= 3) {
       bool moved = true;
       for (int round = 0; round < rounds && moved; ++round) {
         moved = false;
-        for (const Vec3& way : ways) moved = attempt(v, step * side(v) * way, star) || moved;
+        for (const Vec3& way : ways) {
+          moved = attempt(v, step * side(v) * way, qualities, least) || moved;
+        }
       }
     }
-    for (std::size_t k = 0; k < faces.size(); ++k) turned_[faces[k]] = star.turned[k];
+    if (mesh_.positions[v] == here) return;
+    for (const Index f : faces) measure(f, many_samples);
   }
 
-  bool attempt(Index v, const Vec3& way, Star& star) {
+  /// Moves v if that leaves less than the least so far.
+  bool attempt(Index v, const Vec3& way, const std::vector<float>& qualities, float& least) {
     Vec3& position = mesh_.positions[v];
     const Vec3 here = position;
     position += way;
     if ((position - before_[v]).norm() <= farthest * side(v) && placement_.allows(position, v) &&
-        keeps_shapes(v, star)) {
-      std::vector<float> turned(star.turned.size());
-      const float left = lack(v, star.lack - least_gain, turned);
-      if (left < star.lack - least_gain) {
-        star.lack = left;
-        star.turned = std::move(turned);
+        keeps(v, qualities)) {
+      const float left = lack(v, least - least_gain);
+      if (left < least - least_gain) {
+        least = left;
         return true;
       }
     }
@@ -260,9 +277,20 @@ class OwnSide {
     return false;
   }
 
-  bool keeps_shapes(Index v, const Star& star) const {
+  /// Of each face around a vertex: as good as is seen nowhere, or as it is.
+  std::vector<float> least_qualities(Index v) const {
+    std::vector<float> qualities;
+    for (const Index f : around_[v]) {
+      const auto n = static_cast<float>(face(f).size());
+      const float good = 0.72f * std::sin(2 * std::numbers::pi_v<float> / n);
+      qualities.push_back(std::min(quality(f), good));
+    }
+    return qualities;
+  }
+
+  bool keeps(Index v, const std::vector<float>& qualities) const {
     for (std::size_t k = 0; k < around_[v].size(); ++k) {
-      if (quality(around_[v][k]) < star.least_quality[k]) return false;
+      if (quality(around_[v][k]) < qualities[k]) return false;
     }
     return true;
   }
@@ -274,29 +302,6 @@ class OwnSide {
       }
     };
     return collect<Index>(mesh_.faces.size(), look, context_);
-  }
-
-  /// Puts the vertices of faces back to where they were last if these pass through others, and did
-  /// not then.
-  void undo_crossings(const std::vector<Index>& faces, const std::vector<Vec3>& last) {
-    Mesh near;
-    near.positions = last;
-    for (const Index f : faces) near.faces.push_back(face(f));
-    const auto inherent = find_crossings(near, context_);
-    near.positions.swap(mesh_.positions);
-    for (bool changed = true; changed;) {
-      changed = false;
-      for (const auto& pair : find_crossings(near, context_)) {
-        if (std::ranges::binary_search(inherent, pair)) continue;
-        for (const Index f : pair) {
-          for (const Index v : std::as_const(near.faces)[f]) {
-            changed = changed || near.positions[v] != last[v];
-            near.positions[v] = last[v];
-          }
-        }
-      }
-    }
-    mesh_.positions = std::move(near.positions);
   }
 
   Mesh& mesh_;
@@ -313,9 +318,10 @@ class OwnSide {
 
 }  // namespace
 
-void keep_to_own_side(Extraction& extraction, const VertexFaces& around, Placement& placement,
-                      const Mesh& surface, const PolygonFit& fit, const Context& context) {
-  OwnSide(extraction, around, placement, fit, context).run(surface);
+void keep_to_own_side(Mesh& mesh, const VertexFaces& around, const Placement& placement,
+                      const std::vector<Vec3>& normals, const PolygonFit& fit,
+                      const Context& context) {
+  OwnSide(mesh, around, placement, fit, context).run(normals);
 }
 
 }  // namespace meshgrain

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <vector>
+
 #include "finish/placement.h"
 #include "finish/regular_polygon.h"
 #include "mesh/vertex_faces.h"
 #include "meshgrain/context.h"
-#include "meshgrain/extract.h"
+#include "meshgrain/mesh.h"
 
 namespace meshgrain {
 
@@ -13,8 +15,10 @@ namespace meshgrain {
 /// faces go where less of that is left, a little off the surface if need be, and the faces stay
 /// near to it, even and regular. No two faces pass through each other that did not before.
 ///
-/// `surface` is the triangle mesh that `placement` is on; `fit` says how large faces should be.
-void keep_to_own_side(Extraction& extraction, const VertexFaces& around, Placement& placement,
-                      const Mesh& surface, const PolygonFit& fit, const Context& context);
+/// `normals` are those of the surface at the vertices, or about so; `fit` says how large faces
+/// should be.
+void keep_to_own_side(Mesh& mesh, const VertexFaces& around, const Placement& placement,
+                      const std::vector<Vec3>& normals, const PolygonFit& fit,
+                      const Context& context);
 
 }  // namespace meshgrain

@@ -3,12 +3,14 @@
 #include <hwy/cache_control.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
+#include "util/collect.h"
+#include "util/sort_unique.h"
 #include "util/triangle.h"
 
 namespace meshgrain {
@@ -50,8 +52,7 @@ Vec3 Projector::normal(Index vertex) const {
 
 std::optional<Mesh> Projector::cut_out(const Eigen::AlignedBox3f& box, std::vector<Index> from,
                                        std::size_t most) const {
-  Mesh piece;
-  if (surface_.is_point_cloud()) return piece;
+  if (surface_.is_point_cloud()) return Mesh();
   std::unordered_set<Index> seen(from.begin(), from.end()), faces;
   while (!from.empty()) {
     if (faces.size() > most) return std::nullopt;
@@ -64,14 +65,30 @@ std::optional<Mesh> Projector::cut_out(const Eigen::AlignedBox3f& box, std::vect
       }
     }
   }
-  std::unordered_map<Index, Index> number;
+  return cut_out(std::vector<Index>(faces.begin(), faces.end()));
+}
+
+Mesh Projector::cut_out(const BoxCells& cells, const Context& context) const {
+  if (surface_.is_point_cloud()) return Mesh();
+  const auto look = [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+    for (std::size_t v = begin; v < end; ++v) {
+      if (!cells.contains(surface_.positions[v])) continue;
+      out.insert(out.end(), around_[v].begin(), around_[v].end());
+    }
+  };
+  return cut_out(collect<Index>(surface_.positions.size(), look, context));
+}
+
+Mesh Projector::cut_out(std::vector<Index> faces) const {
+  sort_unique(faces);
+  std::vector<Index> vertices = vertices_of(surface_, faces);
+  Mesh piece;
+  for (const Index v : vertices) piece.positions.push_back(surface_.positions[v]);
   for (const Index f : faces) {
     std::array<Index, 3> corners;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Index v = surface_.faces[f][k];
-      const auto [it, is_new] = number.try_emplace(v, static_cast<Index>(number.size()));
-      if (is_new) piece.positions.push_back(surface_.positions[v]);
-      corners[k] = it->second;
+      const auto at = std::ranges::lower_bound(vertices, surface_.faces[f][k]);
+      corners[k] = static_cast<Index>(at - vertices.begin());
     }
     piece.faces.push_back(corners);
   }

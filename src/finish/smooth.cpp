@@ -98,7 +98,7 @@ class Smoother {
   void fit_faces();
 
   /// Brings faces off other sides of the surface, where it is thin.
-  void keep_to_own_side(const Mesh& surface);
+  void keep_to_own_side();
 
  private:
   template <typename Body>
@@ -333,11 +333,11 @@ void Smoother::fit_faces() {
   if (options_.fit > 0) fit_to_surface(extraction_, around_, placement_, options_.fit, context_);
 }
 
-void Smoother::keep_to_own_side(const Mesh& surface) {
-  if (surface.is_point_cloud() || options_.is_part) return;
+void Smoother::keep_to_own_side() {
+  if (options_.is_part) return;
   look_up_sizes();
   const PolygonFit fit{mean_side(mesh_, sizes_, context_), 1, sizes_};
-  meshgrain::keep_to_own_side(extraction_, around_, placement_, surface, fit, context_);
+  meshgrain::keep_to_own_side(mesh_, around_, placement_, normals_, fit, context_);
 }
 
 }  // namespace
@@ -371,7 +371,7 @@ void smooth(Extraction& extraction, const Mesh& surface, const VertexFaces& arou
   smoother.iterate(iterations - done, true);
   smoother.mend();
   smoother.fit_faces();
-  smoother.keep_to_own_side(surface);
+  smoother.keep_to_own_side();
 }
 
 }  // namespace meshgrain

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "meshgrain/context.h"
+#include "meshgrain/mesh.h"
+
+namespace meshgrain {
+
+/// Keeps some of the faces of a mesh, while its vertices are moved, from passing through each other
+/// where they did not before.
+class CrossingGuard {
+ public:
+  /// The mesh and the context must outlive this.
+  CrossingGuard(Mesh& mesh, const std::vector<Index>& faces, const Context& context);
+
+  /// Puts the vertices of faces that pass through others, and did not at the last call, back to
+  /// where they were then.
+  void undo_new();
+
+ private:
+  Mesh& mesh_;
+  const Context& context_;
+  std::vector<Index> vertices_;  // of those faces
+  Mesh part_;                    // those faces
+  std::vector<std::array<Index, 2>> crossings_;
+};
+
+}  // namespace meshgrain
