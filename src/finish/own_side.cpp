@@ -59,7 +59,7 @@ class OwnSide {
 
  private:
   // Each with the samples elsewhere in the faces: what is between them does not stay unseen.
-  static constexpr int sweeps = 5;
+  static constexpr int sweeps = 3;
   static constexpr int most_samples = 3, many_samples = 2,
                        few_samples = 1;  // of a triangle, squared
 
