@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "meshgrain/uninitialized.h"
+
 namespace meshgrain {
 
 using Vec3 = Eigen::Vector3f;
@@ -53,7 +55,7 @@ class Faces {
   static Faces uniform(std::size_t count, std::size_t degree);
 
  private:
-  std::vector<Index> corners_;
+  UninitializedVector<Index> corners_;
   std::vector<std::size_t> starts_;  // count_ + 1 offsets, or empty while the degree is uniform
   std::size_t count_ = 0;
   std::size_t degree_ = 0;

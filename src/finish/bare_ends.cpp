@@ -1,13 +1,15 @@
 #include "finish/bare_ends.h"
 
 #include <algorithm>
-#include <compare>
+#include <bit>
+#include <cstdint>
 #include <iterator>
 #include <limits>
 #include <utility>
 
 #include "graph/spread.h"
 #include "util/collect.h"
+#include "util/radix_sort.h"
 #include "util/sort_unique.h"
 #include "util/triangle.h"
 
@@ -77,21 +79,22 @@ class BareEnds {
 };
 
 std::vector<Index> BareEnds::not_reached(const EdgeLength& reach) {
-  struct Place {
-    Index node, vertex;
-    auto operator<=>(const Place&) const = default;
-  };
   const std::vector<Vec3>& positions = extraction_.mesh.positions;
-  std::vector<Place> places;
-  for (Index v = 0; v < positions.size(); ++v) places.push_back({extraction_.nodes[v], v});
-  std::ranges::sort(places);
+  // Nodes, in the upper bits, and their vertices.
+  std::vector<std::uint64_t> places(positions.size());
+  for (Index v = 0; v < positions.size(); ++v) {
+    places[v] = (std::uint64_t{extraction_.nodes[v]} << 32) | v;
+  }
+  radix_sort_by_upper(places, static_cast<int>(std::bit_width(graph_.size())), context_);
+  const auto node_of = [](std::uint64_t place) { return static_cast<Index>(place >> 32); };
+  const auto vertex_of = [](std::uint64_t place) { return static_cast<Index>(place); };
   return collect<Index>(
       vertex_.size(),
       [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
-        auto after = std::ranges::lower_bound(places, Place{static_cast<Index>(begin), 0});
+        auto after = std::ranges::lower_bound(places, std::uint64_t{begin} << 32);
         Index before = no_index;  // the vertex that reaches the node before
         for (auto i = static_cast<Index>(begin); i < end; ++i) {
-          while (after != places.end() && after->node < i) ++after;
+          while (after != places.end() && node_of(*after) < i) ++after;
           const Vec3& p = graph_.positions[i];
           const auto is_reached = [&](Index v) {
             if ((p - positions[v]).squaredNorm() > reach[i] * reach[i]) return false;
@@ -105,8 +108,8 @@ std::vector<Index> BareEnds::not_reached(const EdgeLength& reach) {
           // From that of the node before, else from those with the nodes just after and before:
           // near in a space-filling order, near in space.
           if (before != no_index && is_reached_from(before)) continue;
-          if (after != places.end() && is_reached_from(after->vertex)) continue;
-          if (after != places.begin() && is_reached_from(std::prev(after)->vertex)) continue;
+          if (after != places.end() && is_reached_from(vertex_of(*after))) continue;
+          if (after != places.begin() && is_reached_from(vertex_of(*std::prev(after)))) continue;
           found.push_back(i);
           before = no_index;
         }

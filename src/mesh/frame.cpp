@@ -3,11 +3,27 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "util/sum.h"
+
 namespace meshgrain {
 
-Frame unit_frame(const Mesh& mesh) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3& p : mesh.positions) box.extend(p.cast<double>());
+Frame unit_frame(const Mesh& mesh, const Context& context) {
+  struct Box : Eigen::AlignedBox3f {
+    Box operator+(const Box& o) const {
+      Box both = *this;
+      both.extend(o);
+      return both;
+    }
+  };
+  const Box single = sum_over_ranges(
+      mesh.positions.size(),
+      [&](std::size_t begin, std::size_t end) {
+        Box part;
+        for (std::size_t v = begin; v < end; ++v) part.extend(mesh.positions[v]);
+        return part;
+      },
+      context);
+  const Eigen::AlignedBox3d box = single.cast<double>();
   Frame frame;
   frame.origin = mesh.origin;
   const double diagonal = mesh.positions.empty() ? 0 : box.diagonal().norm();
@@ -15,8 +31,12 @@ Frame unit_frame(const Mesh& mesh) {
   return frame;
 }
 
-void enter(const Frame& frame, Mesh& mesh) {
-  for (Vec3& p : mesh.positions) p = (p.cast<double>() / frame.scale).cast<float>();
+void enter(const Frame& frame, Mesh& mesh, const Context& context) {
+  context.for_ranges(mesh.positions.size(), 8192, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      mesh.positions[v] = (mesh.positions[v].cast<double>() / frame.scale).cast<float>();
+    }
+  });
   mesh.origin.setZero();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "meshgrain/context.h"
 #include "meshgrain/fields.h"
 
 namespace meshgrain {
@@ -14,9 +15,9 @@ struct Frame {
   Eigen::Vector3d inside(const Eigen::Vector3d& p) const { return (p - origin) / scale; }
 };
 
-Frame unit_frame(const Mesh& mesh);
+Frame unit_frame(const Mesh& mesh, const Context& context = Context(1));
 
-void enter(const Frame& frame, Mesh& mesh);
+void enter(const Frame& frame, Mesh& mesh, const Context& context = Context(1));
 void leave(const Frame& frame, Mesh& mesh);
 void leave(const Frame& frame, Fields& fields);
 

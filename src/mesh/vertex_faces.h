@@ -6,13 +6,14 @@
 
 #include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
+#include "meshgrain/uninitialized.h"
 
 namespace meshgrain {
 
 /// Faces by vertices, those of each in increasing order.
 struct VertexFaces {
   std::vector<Index> offsets;  ///< One more than there are vertices.
-  std::vector<Index> faces;
+  UninitializedVector<Index> faces;
 
   std::span<const Index> operator[](std::size_t v) const {
     return {faces.data() + offsets[v], offsets[v + 1] - offsets[v]};

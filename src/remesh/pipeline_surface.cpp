@@ -34,9 +34,9 @@ void Pipeline::clean_up(Mesh input) {
   stage_("clean", [&] {
     result_.report.notes = clean_input(input, context_);
     clean_vertices_ = input.positions.size();
-    frame_ = unit_frame(input);
+    frame_ = unit_frame(input, context_);
     aim_at(options_.faces);
-    enter(frame_, input);
+    enter(frame_, input, context_);
     const bool is_ready = is_cloud_ || input.faces.uniform_degree() == 3;
     surface_ = is_ready ? std::move(input) : triangulate(input);
     for (std::string& note : describe(orient_faces(surface_, context_))) {
