@@ -12,6 +12,27 @@
 
 namespace meshgrain {
 
+/// The bounds of ranges of vertices, as many as told, to which about as many faces come each, by
+/// some of the faces.
+template <typename VerticesOf>
+std::vector<std::size_t> even_ranges(std::size_t faces, std::size_t vertices,
+                                     const VerticesOf& vertices_of, std::size_t ranges) {
+  constexpr std::size_t samples = 1024;
+  std::vector<std::size_t> some;
+  if (ranges > 1) {
+    for (std::size_t f = 0; f < faces; f += faces / samples + 1) {
+      for (const Index v : vertices_of(f)) some.push_back(v);
+    }
+    std::sort(some.begin(), some.end());
+  }
+  std::vector<std::size_t> bounds{0};
+  for (std::size_t r = 1; r < ranges && !some.empty(); ++r) {
+    bounds.push_back(some[r * some.size() / ranges]);
+  }
+  bounds.push_back(vertices);
+  return bounds;
+}
+
 /// A counting sort of faces by vertex: each comes to those that `vertices_of(f)` lists, which
 /// `put(f, place)` is told, those of a vertex in increasing order. Each range of vertices is one
 /// thread's alone, which reads all faces: that is quick, as they come one after the other, and the
@@ -22,21 +43,26 @@ std::vector<Index> sort_by_vertex(std::size_t faces, std::size_t vertices,
                                   const Context& context) {
   std::vector<Index> offsets(vertices + 1, 0);
   constexpr std::size_t most_ranges = 8;
-  const auto ranges = std::clamp<std::size_t>(context.threads(), 1, most_ranges);
-  const std::size_t grain = std::max<std::size_t>((vertices + ranges - 1) / ranges, 1);
-  context.for_ranges(vertices, grain, [&](std::size_t begin, std::size_t end) {
+  const auto bounds = even_ranges(faces, vertices, vertices_of,
+                                  std::clamp<std::size_t>(context.threads(), 1, most_ranges));
+  const auto for_ranges = [&](const auto& body) {
+    context.for_ranges(bounds.size() - 1, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t r = begin; r < end; ++r) body(bounds[r], bounds[r + 1] - bounds[r]);
+    });
+  };
+  for_ranges([&](std::size_t begin, std::size_t count) {
     for (std::size_t f = 0; f < faces; ++f) {
       for (const Index v : vertices_of(f)) {
-        if (v - begin < end - begin) ++offsets[v];
+        if (v - begin < count) ++offsets[v];
       }
     }
   });
   // First the ends of each vertex's faces, which move down to the starts as these are filled in.
   std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
-  context.for_ranges(vertices, grain, [&](std::size_t begin, std::size_t end) {
+  for_ranges([&](std::size_t begin, std::size_t count) {
     for (std::size_t f = faces; f-- > 0;) {
       for (const Index v : vertices_of(f)) {
-        if (v - begin < end - begin) put(f, --offsets[v]);
+        if (v - begin < count) put(f, --offsets[v]);
       }
     }
   });
