@@ -15,15 +15,16 @@ constexpr double sharp = 40;  // degrees
 // Of sculptures and scans it is hardly ever more than a half.
 constexpr double clean_enough = 0.8;
 
-bool is_above(const SharpEdge& edge, double degrees) {
-  return edge.cosine < std::cos(degrees * std::numbers::pi / 180);
+double cosine_of(double degrees) {
+  return std::cos(degrees * std::numbers::pi / 180);
 }
 
 double length_above(const Mesh& mesh, std::span<const SharpEdge> edges, double degrees) {
+  const double cosine = cosine_of(degrees);
   double sum = 0;
   for (const SharpEdge& edge : edges) {
     const auto [a, b] = edge.ends;
-    if (is_above(edge, degrees)) sum += (mesh.positions[a] - mesh.positions[b]).norm();
+    if (edge.cosine < cosine) sum += (mesh.positions[a] - mesh.positions[b]).norm();
   }
   return sum;
 }
@@ -40,7 +41,8 @@ std::vector<std::uint8_t> above_best_threshold(const Mesh& mesh, std::span<const
     threshold = degrees;
   }
   std::vector<std::uint8_t> result;
-  for (const SharpEdge& edge : edges) result.push_back(is_above(edge, threshold));
+  const double cosine = cosine_of(threshold);
+  for (const SharpEdge& edge : edges) result.push_back(edge.cosine < cosine);
   return result;
 }
 
