@@ -62,6 +62,18 @@ TEST(IndexMarks, MarksBehindWaitForTheNextLoop) {
   EXPECT_EQ(take_all(marks, 301), std::vector<Index>{300});
 }
 
+TEST(IndexMarks, StayUntilTakenOrCleared) {
+  IndexMarks marks;
+  for (const Index i : {7u, 64u, 190u}) marks.set(i);
+  EXPECT_EQ(marks.first(0), 7u);
+  EXPECT_EQ(marks.first(0), 7u);
+  EXPECT_EQ(marks.first(8), 64u);
+  EXPECT_EQ(marks.first(65, 190), no_index);
+  marks.clear(64);
+  EXPECT_EQ(marks.first(8), 190u);
+  EXPECT_EQ(marks.first(191), no_index);
+}
+
 TEST(IndexMarks, AreASet) {
   IndexMarks marks;
   std::set<Index> expected;

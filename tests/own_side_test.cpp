@@ -113,7 +113,11 @@ TEST(NearSurface, SeesEverySide) {
     const Index second = first + (z < 0 ? 2 : 1);
     surface.faces.push_back({first, second, 2 * first + 3 - second});
   }
-  const NearSurface near(surface);
+  // One that is not near.
+  surface.positions.insert(surface.positions.end(), {Vec3(9, 0, 0), Vec3(10, 0, 0), Vec3(9, 1, 0)});
+  surface.faces.push_back({6, 7, 8});
+  const std::vector<Eigen::AlignedBox3f> boxes{{Vec3(-1, -1, -0.1f), Vec3(1, 1, 0)}};
+  const NearSurface near(surface, BoxCells(boxes, 0.25f), Context());
   const auto above = near.nearest(Vec3(0, 0, -0.04f), 1);
   EXPECT_FLOAT_EQ(above.distance, 0.04f);
   EXPECT_EQ(above.normal, Vec3::UnitZ());
@@ -123,6 +127,7 @@ TEST(NearSurface, SeesEverySide) {
   const auto none = near.nearest(Vec3(0, 0, 0.5f), 0.4f);
   EXPECT_EQ(none.distance, 0.4f);
   EXPECT_TRUE(none.normal.isZero());
+  EXPECT_EQ(near.nearest(Vec3(9.2f, 0.2f, 0), 1).distance, 1);
 }
 
 TEST(VertexBatches, ShareNoFace) {

@@ -9,7 +9,9 @@
 #include <tuple>
 
 #include "field/jumps.h"
+#include "mesh/sort_by_vertex.h"
 #include "util/edge_of.h"
+#include "util/indices.h"
 #include "util/sort_unique.h"
 
 namespace meshgrain {
@@ -144,58 +146,59 @@ Clusters average_clusters(const Graph& graph, const PositionField& position,
                           std::span<const Index> nodes, std::span<const Index> cluster_of,
                           std::span<const std::uint8_t> border, std::span<const std::uint8_t> hold,
                           std::size_t count, const Context& context) {
-  std::vector<float> alphas(nodes.size());
-  context.for_ranges(nodes.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t m = begin; m < end; ++m) {
-      const Index i = nodes[m];
-      const float beta = position.edge_length[i] / 3;
+  // The members of each cluster, in order.
+  UninitializedVector<Index> members(nodes.size());
+  const std::vector<Index> offsets = sort_by_vertex(
+      nodes.size(), count,
+      [&](std::size_t m) {
+        return std::span<const Index>(&cluster_of[m], cluster_of[m] == no_index ? 0 : 1);
+      },
+      [&](std::size_t m, Index place) { members[place] = nodes[m]; }, context);
+  Clusters result;
+  result.positions.resize(count);
+  result.normals.resize(count);
+  result.on_border.resize(count);
+  result.cover.resize(count);
+  result.nodes.resize(count);
+  const auto average = [&](Index c) {
+    const std::span<const Index> here(members.data() + offsets[c], offsets[c + 1] - offsets[c]);
+    Vec3 point = Vec3::Zero(), normal = Vec3::Zero();
+    float weight = 0, cover = 0;
+    std::uint8_t on_border = 0, most_held = 0;
+    for (const Index i : here) {
+      const float rho = position.edge_length[i], beta = rho / 3;
       // Never quite zero: a cluster whose members are all far from its lattice point needs a place
       // too.
-      alphas[m] = std::max(
+      const float alpha = std::max(
           std::exp(-(position.points[i] - graph.positions[i]).squaredNorm() / (beta * beta)),
           1e-20f);
+      point += alpha * position.points[i];
+      normal += alpha * graph.normals[i];
+      weight += alpha;
+      cover += graph.areas[i] / (rho * rho);
+      on_border |= border[i];
+      most_held = std::max(most_held, hold[i]);
     }
-  });
-  Clusters result;
-  result.positions.assign(count, Vec3::Zero());
-  result.normals.assign(count, Vec3::Zero());
-  result.on_border.assign(count, 0);
-  result.cover.assign(count, 0);
-  std::vector<float> weight(count, 0);
-  std::vector<std::uint8_t> most_held(count, 0);
-  for (std::size_t m = 0; m < nodes.size(); ++m) {
-    const Index c = cluster_of[m], i = nodes[m];
-    if (c == no_index) continue;
-    const float alpha = alphas[m];
-    result.positions[c] += alpha * position.points[i];
-    result.normals[c] += alpha * graph.normals[i];
-    weight[c] += alpha;
-    result.on_border[c] |= border[i];
-    most_held[c] = std::max(most_held[c], hold[i]);
-    const float rho = position.edge_length[i];
-    result.cover[c] += graph.areas[i] / (rho * rho);
-  }
-  for (std::size_t c = 0; c < count; ++c) {
-    result.positions[c] /= weight[c];
-    const float length = result.normals[c].norm();
-    result.normals[c] = length > 0 ? Vec3(result.normals[c] / length) : Vec3(Vec3::UnitZ());
-  }
-
+    point /= weight;
+    const float length = normal.norm();
+    result.positions[c] = point;
+    result.normals[c] = length > 0 ? Vec3(normal / length) : Vec3(Vec3::UnitZ());
+    result.on_border[c] = on_border;
+    result.cover[c] = cover;
+    float nearest = 0;
+    Index& node = result.nodes[c] = no_index;
+    for (const Index i : here) {
+      if (hold[i] < most_held) continue;
+      const float distance = (graph.positions[i] - point).squaredNorm();
+      if (node != no_index && distance >= nearest) continue;
+      nearest = distance;
+      node = i;
+    }
+  };
+  for_indices(count, average, context);
   const float mean_cover =
       std::accumulate(result.cover.begin(), result.cover.end(), 0.0f) / static_cast<float>(count);
   for (float& cover : result.cover) cover /= mean_cover;
-
-  result.nodes.assign(count, no_index);
-  std::vector<float> nearest(count, 0);
-  for (std::size_t m = 0; m < nodes.size(); ++m) {
-    const Index c = cluster_of[m], i = nodes[m];
-    if (c == no_index || hold[i] < most_held[c]) continue;
-    const float distance = (graph.positions[i] - result.positions[c]).squaredNorm();
-    if (result.nodes[c] == no_index || distance < nearest[c]) {
-      nearest[c] = distance;
-      result.nodes[c] = i;
-    }
-  }
   return result;
 }
 

@@ -7,8 +7,10 @@
 #include <numeric>
 #include <span>
 
+#include "mesh/sort_by_vertex.h"
 #include "mesh/vertex_faces.h"
 #include "util/collect.h"
+#include "util/indices.h"
 
 namespace meshgrain {
 namespace {
@@ -69,13 +71,6 @@ bool is_inside(const Mesh& surface, std::span<const Index> around, Index v) {
     edge = next;
   }
   return false;
-}
-
-template <typename Body>
-void for_indices(std::size_t count, const Body& body, const Context& context) {
-  context.for_ranges(count, 4096, [&](std::size_t begin, std::size_t end) {
-    for (auto i = static_cast<Index>(begin); i < end; ++i) body(i);
-  });
 }
 
 class DiskSearch {
@@ -262,16 +257,16 @@ class DiskSearch {
   /// Clusters around which the others would not be a simple loop. Returns whether there are any.
   bool reject_folds(const std::vector<std::array<Index, 3>>& triangles) {
     // The triangles' edges by the cluster where they start.
-    std::vector<Index> offsets(graph_.size() + 1, 0), ends(3 * triangles.size());
-    for (const auto& triangle : triangles) {
-      for (const Index v : triangle) ++offsets[parent_[v]];
-    }
-    std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
-    for (const auto& triangle : triangles) {
-      for (int k = 0; k < 3; ++k) {
-        ends[--offsets[parent_[triangle[k]]]] = parent_[triangle[(k + 1) % 3]];
-      }
-    }
+    const auto root_of = [&](std::size_t corner) {
+      return parent_[triangles[corner / 3][corner % 3]];
+    };
+    std::vector<Index> ends(3 * triangles.size());
+    const std::vector<Index> offsets = sort_by_vertex(
+        ends.size(), graph_.size(), [&](std::size_t corner) { return std::array{root_of(corner)}; },
+        [&](std::size_t corner, Index place) {
+          ends[place] = root_of(corner % 3 == 2 ? corner - 2 : corner + 1);
+        },
+        context_);
     std::atomic<bool> any = false;
     const auto reject_cluster = [&](Index root) {
       if (!has_members(root)) return;
@@ -345,11 +340,10 @@ DiskClusters find_disk_clusters(const Mesh& surface, const Graph& graph,
                                 PositionEnergy energy, std::vector<std::uint8_t> is_free,
                                 const Context& context) {
   const VertexFaces around = vertex_faces(surface, context);
-  context.for_ranges(graph.size(), 2048, [&](std::size_t begin, std::size_t end) {
-    for (auto v = static_cast<Index>(begin); v < end; ++v) {
-      is_free[v] = is_free[v] && is_inside(surface, around[v], v);
-    }
-  });
+  const auto look_around = [&](Index v) {
+    is_free[v] = is_free[v] && is_inside(surface, around[v], v);
+  };
+  for_indices(graph.size(), look_around, context);
   const std::vector<std::uint8_t> rotations =
       zero_jumps(graph, orientation, position, energy, is_free, context);
   DiskClusters disks = DiskSearch(surface, graph, position.posy, rotations, is_free, context).run();

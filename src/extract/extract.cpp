@@ -69,7 +69,7 @@ void drop_fragments(Extraction& extraction, const Graph& graph) {
 void make_regular(FaceRepair& repair, int posy, const Context& context) {
   if (posy == 4) {
     repair.improve_edges(context);
-    repair.close_quads();
+    repair.close_quads(context);
     repair.open_vertices();
     repair.improve_edges(context);
     repair.remove_doublets();
@@ -171,7 +171,7 @@ Extraction extract_from_mesh(const Graph& graph, const OrientationField& orienta
   lattice.clusters.hold = std::move(lattice.hold);
   FaceRepair repair(lattice.map, lattice.clusters, position.posy, std::move(lattice.holes),
                     std::move(lattice.lines));
-  if (position.posy == 4) repair.remove_diagonals(lattice.jumps);
+  if (position.posy == 4) repair.remove_diagonals(lattice.jumps, context);
   repair.part_straight_angles();
   make_regular(repair, position.posy, context);
   if (options.only_quads) {

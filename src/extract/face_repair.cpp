@@ -66,7 +66,6 @@ bool FaceRepair::is_turned_over(Index vertex, const Vec3& normal) const {
 }
 
 bool FaceRepair::is_straight(Index to, Index from, const Vec3& normal) const {
-  if (line(to) == no_index || line(from) == no_index) return false;
   const Index v = map_.origin(to);
   if (clusters_.hold[v] != at_corner) return true;
   const Vec3 a = clusters_.positions[map_.target(to)] - clusters_.positions[v];
@@ -78,8 +77,7 @@ bool FaceRepair::is_straight(Index to, Index from, const Vec3& normal) const {
 
 bool FaceRepair::is_last_rung(Index h) const {
   const Index t = PolygonMap::twin(h), to = map_.next(t), from = map_.prev(h);
-  if (line(to) == no_index || line(from) == no_index) return false;  // as nearly everywhere
-  return is_straight(to, from, face_normal(h) + face_normal(t));
+  return is_between_lines(to, from) && is_straight(to, from, face_normal(h) + face_normal(t));
 }
 
 void FaceRepair::part_straight_angles() {
@@ -89,6 +87,7 @@ void FaceRepair::part_straight_angles() {
     again = false;
     for (Index h = 0; h < map_.halfedges(); ++h) {
       if (map_.removed(h) || hole_[h]) continue;
+      if (!is_between_lines(h, map_.prev(h))) continue;  // as nearly everywhere
       if (!is_straight(h, map_.prev(h), face_normal(h))) continue;
       if ((map_.degree(h) != 3 || make_room(h)) && part_face(h)) continue;
       // Not among triangles: nothing would part what is left into such again.

@@ -49,7 +49,7 @@ class FaceRepair {
 
   /// Removes the edges between triangles that the lattice has as a square's diagonal (`jumps`: one
   /// an edge). A triangle around a singularity may have two of them, and become a pentagon.
-  void remove_diagonals(std::span<const Jump> jumps);
+  void remove_diagonals(std::span<const Jump> jumps, const Context& context);
 
   /// Quads: takes edges away, or turns them within the two faces beside them, as long as that
   /// leaves fewer irregular faces and vertices, the greatest gain first. So pairs of triangles
@@ -57,7 +57,7 @@ class FaceRepair {
   void improve_edges(const Context& context);
 
   /// Closes quads by merging two opposite corners, as long as that leaves fewer irregular vertices.
-  void close_quads();
+  void close_quads(const Context& context);
   /// Closes `count` of them, wherever it leaves the fewest. Returns how many it could.
   std::size_t close_quads(std::size_t count);
   /// Merges the corner opposite to the origin of h into that, which stays where it is if anything
@@ -135,6 +135,9 @@ class FaceRepair {
   std::vector<Index> union_halfedges(Index h) const;
   /// Whether what the two become without the edge would have a corner twice.
   bool touches_itself(Index h) const;
+  bool is_between_lines(Index to, Index from) const {
+    return line(to) != no_index && line(from) != no_index;
+  }
   /// Whether a face between two edges of feature lines, that leave the origin of `to` and come from
   /// `from`, has a straight angle there. `normal` is that of the face.
   bool is_straight(Index to, Index from, const Vec3& normal) const;

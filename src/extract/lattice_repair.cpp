@@ -15,6 +15,7 @@
 #include "util/collect.h"
 #include "util/edge_of.h"
 #include "util/index_marks.h"
+#include "util/indices.h"
 
 namespace meshgrain {
 namespace {
@@ -37,10 +38,7 @@ double flaws(std::span<const Piece> pieces) {
 class LatticeRepair {
  public:
   LatticeRepair(LatticeMesh& lattice, const Context& context)
-      : lattice_(lattice),
-        map_(lattice.map),
-        changed_(map_.vertices(), 0),
-        sound_(map_.vertices(), 1) {
+      : lattice_(lattice), map_(lattice.map), changed_(map_.vertices(), 0) {
     mark_all(context);
   }
 
@@ -69,12 +67,7 @@ class LatticeRepair {
     const std::vector<std::uint8_t> whole = mark_triangles(context);
     const auto edges = static_cast<Index>(map_.halfedges() / 2);
     const auto mark_if = [&](IndexMarks& marks, const auto& condition) {
-      const auto look = [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
-        for (auto e = static_cast<Index>(begin); e < end; ++e) {
-          if (condition(e)) out.push_back(e);
-        }
-      };
-      for (const Index e : collect<Index>(edges, look, context)) marks.set(e);
+      for (const Index e : indices_where(edges, condition, context)) marks.set(e);
     };
     mark_if(zero_edges_, [&](Index e) { return lattice_.jumps[e].is_zero(); });
     mark_if(long_edges_, [&](Index e) { return parts(2 * e) > 1; });
@@ -109,7 +102,7 @@ class LatticeRepair {
       Index h = found.h;
       for (int k = 0; k < 3; ++k, h = map_.next(h)) {
         if (found.is_cone) swings_.set(h);
-        if (found.is_flawed) sound_[map_.origin(h)] = 0;
+        if (found.is_flawed) unsound_.set(map_.origin(h));
       }
     }
     return whole;
@@ -128,6 +121,7 @@ class LatticeRepair {
   }
   void mark_star(Index v) {
     changed_[v] = now_;
+    unsound_.set(v);
     lattice_.for_each_leaving(v, [&](Index h) {
       mark(h / 2);
       mark(map_.next(h) / 2);
@@ -157,11 +151,9 @@ class LatticeRepair {
 
   /// Whether no triangle around v is flawed; if one is, `before_` gets them all.
   bool is_sound(Index v) {
-    if (v >= sound_.size()) sound_.resize(map_.vertices(), 0);
-    if (sound_[v] > changed_[v]) return true;
     star(v, before_);
     if (flaws(before_) > 0) return false;
-    sound_[v] = now_ + 1;
+    unsound_.clear(v);
     return true;
   }
 
@@ -330,8 +322,8 @@ class LatticeRepair {
     for (Index h = swings_.take(0, count); h != no_index; h = swings_.take(h + 1, count)) {
       const Index t = PolygonMap::twin(h);
       if (map_.removed(h) || lattice_.holes[h] || lattice_.holes[t]) continue;
+      if (!lattice_.is_cone(h) || lattice_.is_cone(t)) continue;
       const std::array<Piece, 2> before{piece(h), piece(t)};
-      if (!before[0].lattice.is_cone() || before[1].lattice.is_cone()) continue;
       const Jump back = composed(before[0].lattice.around[1], before[0].lattice.around[2], posy);
       std::array<Piece, 2> after = before;
       after[0].lattice.around[0] = reversed(back, posy);
@@ -388,7 +380,7 @@ class LatticeRepair {
   /// stretch edges over cells for which there is no room, which fill_in() would then crowd.
   bool shift_vertices() {
     bool any = false;
-    for (Index v = 0; v < map_.vertices(); ++v) {
+    for (Index v = unsound_.first(0); v != no_index; v = unsound_.first(v + 1)) {
       if (map_.leaving(v) == no_index || shift_refused_.still(v, *this) || is_sound(v)) continue;
       constexpr double against_stretching = 0.1;
       const double enough = flaws(before_) - least_gain;
@@ -422,7 +414,7 @@ class LatticeRepair {
   /// Takes vertices with flawed triangles away, into the neighbour where that leaves the least.
   bool collapse_flawed() {
     bool any = false;
-    for (Index v = 0; v < map_.vertices(); ++v) {
+    for (Index v = unsound_.first(0); v != no_index; v = unsound_.first(v + 1)) {
       if (map_.leaving(v) == no_index || collapse_refused_.still(v, *this) || is_sound(v)) continue;
       double least = flaws(before_) - least_gain;
       Index best = no_index;
@@ -600,9 +592,9 @@ class LatticeRepair {
   std::vector<std::uint32_t> changed_;  // when each vertex's star last did
   IndexMarks zero_edges_, flips_, long_edges_;
   IndexMarks swings_, large_;  // halfedges
+  IndexMarks unsound_;         // vertices with a flaw in their star, unless that went since
   Refused shift_refused_, collapse_refused_;
   std::set<std::array<Index, 2>> split_;
-  std::vector<std::uint32_t> sound_;  // when each vertex's star was last found without flaw
 };
 
 }  // namespace

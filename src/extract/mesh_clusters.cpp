@@ -3,6 +3,7 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 #include <numeric>
 #include <tuple>
@@ -12,6 +13,7 @@
 #include "features/feature_jumps.h"
 #include "field/posy.h"
 #include "util/collect.h"
+#include "util/indices.h"
 
 namespace meshgrain {
 namespace {
@@ -24,12 +26,10 @@ class Collapse {
            PositionEnergy energy, const Context& context)
       : graph_(graph), orientation_(orientation), position_(position) {
     const FeatureEdges edges(features, graph.size());
-    hold_.resize(graph.size());
+    hold_ = edges.holds();
     std::vector<std::uint8_t> is_free(graph.size());
-    for (Index i = 0; i < graph.size(); ++i) {
-      hold_[i] = edges.hold(i);
-      is_free[i] = hold_[i] == free_vertex;
-    }
+    for_indices(
+        graph.size(), [&](Index i) { is_free[i] = hold_[i] == free_vertex; }, context);
     disks_ = find_disk_clusters(surface, graph, orientation, position, energy, std::move(is_free),
                                 context);
     lattice_.posy = position.posy;
@@ -40,11 +40,14 @@ class Collapse {
     holes_.resize(halfedges);
     rim_.assign(graph.size(), 0);
     lattice_.hold.resize(map_.vertices());
-    for (Index v = 0; v < map_.vertices(); ++v) lattice_.hold[v] = hold_[sources_[v]];
-    for (Index h = 0; h < halfedges; ++h) {
+    for_indices(
+        map_.vertices(), [&](Index v) { lattice_.hold[v] = hold_[sources_[v]]; }, context);
+    const auto look_for_hole = [&](Index h) {
       holes_[h] = corners[h] == no_index;
-      if (holes_[h]) rim_[sources_[map_.origin(h)]] = 1;
-    }
+      if (!holes_[h]) return;
+      std::atomic_ref(rim_[sources_[map_.origin(h)]]).store(1, std::memory_order_relaxed);
+    };
+    for_indices(halfedges, look_for_hole, context);
     jumps_.resize(halfedges / 2);
     lattice_.lines.resize(halfedges / 2);
     take_jumps(features, edges, FeatureJumps(graph, orientation, position, energy, hold_), corners,
@@ -93,21 +96,27 @@ class Collapse {
   /// The map of the surface with each disk as one vertex, in the frame of its root. Returns the
   /// corners of `disks_.triangles` where halfedges start.
   std::vector<Index> shrink_disks(const Context& context) {
-    std::vector<Index> number(graph_.size(), no_index), roots;
-    for (const auto& triangle : disks_.triangles) {
-      for (const Index v : triangle) number[disks_.root[v]] = 0;
-    }
-    for (Index i = 0; i < graph_.size(); ++i) {
-      if (number[i] == no_index) continue;
-      number[i] = static_cast<Index>(roots.size());
-      roots.push_back(i);
-    }
+    std::vector<Index> number(graph_.size(), no_index);
+    const auto mark_roots = [&](Index t) {
+      for (const Index v : disks_.triangles[t]) {
+        std::atomic_ref(number[disks_.root[v]]).store(0, std::memory_order_relaxed);
+      }
+    };
+    for_indices(disks_.triangles.size(), mark_roots, context);
+    const std::vector<Index> roots = indices_where(
+        graph_.size(), [&](Index i) { return number[i] != no_index; }, context);
+    for_indices(
+        roots.size(), [&](Index k) { number[roots[k]] = k; }, context);
     Mesh shrunk;
     shrunk.positions.resize(roots.size());
-    for (const auto& [a, b, c] : disks_.triangles) {
-      shrunk.faces.push_back(
-          std::array{number[disks_.root[a]], number[disks_.root[b]], number[disks_.root[c]]});
-    }
+    shrunk.faces = Faces::uniform(disks_.triangles.size(), 3);
+    Index* const corner = shrunk.faces.corners().data();
+    const auto shrink = [&](Index t) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        corner[3 * t + k] = number[disks_.root[disks_.triangles[t][k]]];
+      }
+    };
+    for_indices(disks_.triangles.size(), shrink, context);
     std::vector<Index> corners;
     map_ = PolygonMap(shrunk, sources_, corners, context);
     for (Index& source : sources_) source = roots[source];
@@ -144,18 +153,14 @@ class Collapse {
 
   void take_nearest_jumps(const FeatureJumps& jumps, const Context& context) {
     constexpr float near_enough = 0.45f;  // edge lengths: any other jump would be farther off
-    const auto look_at_edges = [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
-      for (auto e = static_cast<Index>(begin); e < end; ++e) {
-        const auto is_near = [&](Index h) {
-          const Index a = map_.origin(h), b = map_.target(h);
-          const Jump jump = lattice_.jump(h);
-          if (jump.t == std::array<int, 2>{0, 0}) return false;  // by any rotation
-          return deviation(a, b, jump.t) < near_enough * position_.edge_length[sources_[a]];
-        };
-        if (!is_near(2 * e) || !is_near(2 * e + 1)) out.push_back(e);
-      }
+    const auto is_near = [&](Index h) {
+      const Index a = map_.origin(h), b = map_.target(h);
+      const Jump jump = lattice_.jump(h);
+      if (jump.t == std::array<int, 2>{0, 0}) return false;  // by any rotation
+      return deviation(a, b, jump.t) < near_enough * position_.edge_length[sources_[a]];
     };
-    const std::vector<Index> far = collect<Index>(jumps_.size(), look_at_edges, context);
+    const auto is_far = [&](Index e) { return !is_near(2 * e) || !is_near(2 * e + 1); };
+    const std::vector<Index> far = indices_where(jumps_.size(), is_far, context);
     // Of each root that is one vertex, if it has such an edge.
     std::vector<Index> vertex(graph_.size(), no_index);
     for (const Index e : far) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "mesh/part.h"
 #include "util/edge_of.h"
 #include "util/sort_unique.h"
 
@@ -17,42 +18,37 @@ using Edges = std::vector<std::array<Index, 2>>;
 Piece cut_piece(const Extraction& whole, const VertexFaces& around, Index face, int rings) {
   const Mesh& mesh = whole.mesh;
   Piece piece;
-  piece.faces = with_rings(mesh, around, {face}, rings);
-  piece.vertices = vertices_of(mesh, piece.faces);
-  for (const Index v : piece.vertices) {
-    piece.on_rim.push_back(!std::ranges::includes(piece.faces, around[v]));
-  }
+  const std::vector<Index> increasing = with_rings(mesh, around, {face}, rings);
+  piece.faces = increasing;
   const auto first = std::ranges::find(piece.faces, face);
   std::rotate(piece.faces.begin(), first, first + 1);
+  const Part here = part_of(mesh, piece.faces);
+  piece.vertices = here.vertices;
+  for (const Index v : piece.vertices) {
+    piece.on_rim.push_back(!std::ranges::includes(increasing, around[v]));
+  }
 
-  const auto here = [&](Index v) {
-    const auto it = std::ranges::lower_bound(piece.vertices, v);
-    const bool found = it != piece.vertices.end() && *it == v;
-    return found ? static_cast<Index>(it - piece.vertices.begin()) : no_index;
-  };
   Extraction& part = piece.extraction;
+  part.mesh = here.mesh;
   Edges edges;
-  std::vector<Index> corners;
-  for (const Index f : piece.faces) {
-    corners.clear();
-    for (const Index v : mesh.faces[f]) corners.push_back(here(v));
+  for (std::size_t f = 0; f < piece.faces.size(); ++f) {
+    const auto corners = here.mesh.faces[f];
     for (std::size_t k = 0; k < corners.size(); ++k) {
       edges.push_back(edge_of(corners[k], corners[(k + 1) % corners.size()]));
     }
-    part.mesh.faces.push_back(corners);
   }
   sort_unique(edges);
   for (Index v = 0; v < piece.vertices.size(); ++v) {
-    part.mesh.positions.push_back(mesh.positions[piece.vertices[v]]);
     part.mesh.normals.push_back(mesh.normals[piece.vertices[v]]);
     part.nodes.push_back(whole.nodes[piece.vertices[v]]);
     if (piece.on_rim[v]) part.corners.push_back(v);
   }
   for (const Index corner : whole.corners) {
-    if (const Index v = here(corner); v != no_index && !piece.on_rim[v]) part.corners.push_back(v);
+    const Index v = here.number(corner);
+    if (v != no_index && !piece.on_rim[v]) part.corners.push_back(v);
   }
   for (const LineEdge& edge : whole.line_edges) {
-    const LineEdge e{here(edge.a), here(edge.b), edge.line};
+    const LineEdge e{here.number(edge.a), here.number(edge.b), edge.line};
     if (e.a == no_index || e.b == no_index) continue;
     if (std::ranges::binary_search(edges, edge_of(e.a, e.b))) part.line_edges.push_back(e);
   }

@@ -3,12 +3,28 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "field/rosy.h"
+#include "mesh/sort_by_vertex.h"
+#include "util/collect.h"
+#include "util/indices.h"
 
 namespace meshgrain {
 namespace {
+
+/// Of each corner, the next one of its face.
+UninitializedVector<Index> corners_after(const Faces& faces, const Context& context) {
+  UninitializedVector<Index> after(faces.corners().size());
+  context.for_ranges(faces.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto first = static_cast<Index>(faces.first(f));
+      const auto last = static_cast<Index>(first + faces.degree(f) - 1);
+      for (Index c = first; c < last; ++c) after[c] = c + 1;
+      after[last] = first;
+    }
+  });
+  return after;
+}
 
 /// The edges of the faces of a mesh by the vertices where they start, those of each in the order of
 /// the faces.
@@ -18,18 +34,16 @@ class EdgesByOrigin {
     Index target, corner;
   };
 
-  explicit EdgesByOrigin(const Mesh& mesh) : offsets_(mesh.positions.size() + 1, 0) {
+  EdgesByOrigin(const Mesh& mesh, std::span<const Index> after, const Context& context)
+      : edges_(after.size()) {
     const auto corners = mesh.faces.corners();
-    edges_.resize(corners.size());
-    for (const Index v : corners) ++offsets_[v];
-    std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
-    for (std::size_t f = mesh.faces.size(); f-- > 0;) {
-      const auto face = mesh.faces[f];
-      for (std::size_t k = face.size(); k-- > 0;) {
-        edges_[--offsets_[face[k]]] = {face[k + 1 < face.size() ? k + 1 : 0],
-                                       static_cast<Index>(mesh.faces.first(f) + k)};
-      }
-    }
+    offsets_ = sort_by_vertex(
+        corners.size(), mesh.positions.size(),
+        [&](std::size_t c) { return std::array{corners[c]}; },
+        [&](std::size_t c, Index place) {
+          edges_[place] = {corners[after[c]], static_cast<Index>(c)};
+        },
+        context);
   }
 
   std::span<const Edge> operator[](Index v) const {
@@ -49,7 +63,7 @@ class EdgesByOrigin {
 
  private:
   std::vector<Index> offsets_;
-  std::vector<Edge> edges_;
+  UninitializedVector<Edge> edges_;
 };
 
 }  // namespace
@@ -103,74 +117,79 @@ PolygonMap::PolygonMap(std::span<const Vec3> positions, std::span<const Vec3> no
 
 PolygonMap::PolygonMap(const Mesh& mesh, std::vector<Index>& sources, std::vector<Index>& corner_at,
                        const Context& context) {
-  const Faces& faces = mesh.faces;
-  const auto corners = faces.corners();
-  const EdgesByOrigin edges(mesh);
+  const auto in_parallel = [&](std::size_t count, const auto& body) {
+    for_indices(count, body, context);
+  };
+  const UninitializedVector<Index> after = corners_after(mesh.faces, context);
+  const EdgesByOrigin edges(mesh, after, context);
   // Of each corner, the one where the same edge starts in the other direction.
-  std::vector<Index> opposite(corners.size(), no_index);
-  context.for_ranges(mesh.positions.size(), 2048, [&](std::size_t begin, std::size_t end) {
-    for (auto v = static_cast<Index>(begin); v < end; ++v) {
-      for (const auto& [target, corner] : edges[v]) {
-        if (v > target || edges.single(v, target) != corner) continue;  // from the lower end
-        opposite[corner] = edges.single(target, v);
-        if (opposite[corner] != no_index) opposite[opposite[corner]] = corner;
-      }
+  std::vector<Index> opposite(after.size(), no_index);
+  in_parallel(mesh.positions.size(), [&](Index v) {
+    for (const auto& [target, corner] : edges[v]) {
+      if (v > target || edges.single(v, target) != corner) continue;  // from the lower end
+      opposite[corner] = edges.single(target, v);
+      if (opposite[corner] != no_index) opposite[opposite[corner]] = corner;
     }
   });
-  std::vector<Index> halfedge_of(corners.size(), no_index);  // of the edge that starts at a corner
-  const auto add_pair = [&] {
-    const auto h = static_cast<Index>(next_.size());
-    next_.insert(next_.end(), 2, no_index);
-    prev_.insert(prev_.end(), 2, no_index);
-    return h;
+
+  // A pair of halfedges for each edge, in the order of the corners where the even ones start.
+  const std::vector<Index> even = indices_where(
+      after.size(), [&](Index c) { return c < opposite[c]; }, context);
+  UninitializedVector<Index> halfedge_of(after.size());  // that starts at a corner
+  corner_at.resize(2 * even.size());
+  in_parallel(even.size(), [&](Index e) {
+    const Index corner = even[e], other = opposite[corner];
+    corner_at[2 * e] = corner;
+    corner_at[2 * e + 1] = other;
+    halfedge_of[corner] = 2 * e;
+    if (other != no_index) halfedge_of[other] = 2 * e + 1;
+  });
+  next_.resize(corner_at.size());
+  prev_.resize(corner_at.size());
+  const auto link = [&](Index h, Index g) {
+    next_[h] = g;
+    prev_[g] = h;
   };
-  for (Index f = 0; f < faces.size(); ++f) {
-    for (std::size_t k = 0; k < faces.degree(f); ++k) {
-      const std::size_t corner = faces.first(f) + k;
-      if (halfedge_of[corner] != no_index) continue;
-      const Index h = add_pair();
-      halfedge_of[corner] = h;
-      if (opposite[corner] != no_index) halfedge_of[opposite[corner]] = h + 1;
-    }
-  }
-
-  corner_at.assign(next_.size(), no_index);
-  for (Index f = 0; f < faces.size(); ++f) {
-    const std::size_t first = faces.first(f), n = faces.degree(f);
-    for (std::size_t k = 0; k < n; ++k) {
-      const Index h = halfedge_of[first + k], g = halfedge_of[first + (k + 1) % n];
-      next_[h] = g;
-      prev_[g] = h;
-      corner_at[h] = static_cast<Index>(first + k);
-    }
-  }
-
+  in_parallel(after.size(), [&](Index c) { link(halfedge_of[c], halfedge_of[after[c]]); });
   // A border halfedge goes on along the border: around its target, past the faces there.
-  for (Index h = 0; h < next_.size(); ++h) {
-    if (corner_at[h] != no_index) continue;
+  in_parallel(even.size(), [&](Index e) {
+    const Index h = 2 * e + 1;
+    if (corner_at[h] != no_index) return;
     Index g = prev_[twin(h)];
     while (corner_at[twin(g)] != no_index) g = prev_[twin(g)];
-    next_[h] = twin(g);
-    prev_[twin(g)] = h;
-  }
+    link(h, twin(g));
+  });
 
   // Vertices: one for each cycle of halfedges that leave it, in the order of the mesh's.
   origin_.assign(next_.size(), no_index);
-  sources.clear();
-  for (Index v = 0; v < mesh.positions.size(); ++v) {
-    for (const auto& edge : edges[v]) {
-      const Index start = halfedge_of[edge.corner];
-      if (origin_[start] != no_index) continue;
-      const auto id = static_cast<Index>(leaving_.size());
-      leaving_.push_back(start);
-      sources.push_back(v);
-      Index h = start;
-      do {
-        origin_[h] = id;
-        h = around(h);
-      } while (h != start);
+  const auto set_origin = [&](Index start, Index vertex) {
+    Index h = start;
+    do {
+      origin_[h] = vertex;
+      h = around(h);
+    } while (h != start);
+  };
+  struct Cycle {
+    Index start, source;
+  };
+  const auto find_cycles = [&](std::size_t begin, std::size_t end, std::vector<Cycle>& out) {
+    for (auto v = static_cast<Index>(begin); v < end; ++v) {
+      for (const auto& edge : edges[v]) {
+        const Index start = halfedge_of[edge.corner];
+        if (origin_[start] != no_index) continue;
+        out.push_back({start, v});
+        set_origin(start, v);
+      }
     }
-  }
+  };
+  const std::vector<Cycle> cycles = collect<Cycle>(mesh.positions.size(), find_cycles, context);
+  leaving_.resize(cycles.size());
+  sources.resize(cycles.size());
+  in_parallel(cycles.size(), [&](Index id) {
+    leaving_[id] = cycles[id].start;
+    sources[id] = cycles[id].source;
+    if (sources[id] != id) set_origin(leaving_[id], id);
+  });
 }
 
 std::size_t PolygonMap::valence(Index vertex) const {
@@ -193,21 +212,13 @@ bool PolygonMap::adjacent(Index a, Index b) const {
 
 std::size_t PolygonMap::degree(Index h) const {
   std::size_t count = 0;
-  Index g = h;
-  do {
-    ++count;
-    g = next_[g];
-  } while (g != h);
+  for_orbit(h, [&](Index) { ++count; });
   return count;
 }
 
 void PolygonMap::orbit(Index h, std::vector<Index>& out) const {
   out.clear();
-  Index g = h;
-  do {
-    out.push_back(g);
-    g = next_[g];
-  } while (g != h);
+  for_orbit(h, [&](Index g) { out.push_back(g); });
 }
 
 void PolygonMap::remove_edge(Index h) {

@@ -52,6 +52,15 @@ class PolygonMap {
   std::size_t valence(Index vertex) const;
   bool adjacent(Index a, Index b) const;
 
+  /// Calls `body` for the halfedges of h's orbit, from h on.
+  template <typename Body>
+  void for_orbit(Index h, const Body& body) const {
+    Index g = h;
+    do {
+      body(g);
+      g = next_[g];
+    } while (g != h);
+  }
   std::size_t degree(Index h) const;
   /// The halfedges of h's orbit, from h on.
   void orbit(Index h, std::vector<Index>& out) const;
@@ -82,8 +91,7 @@ class PolygonMap {
   Index add_hub(Index h);
 
  private:
-  std::vector<Index> origin_, next_, prev_;
-  std::vector<Index> leaving_;
+  UninitializedVector<Index> origin_, next_, prev_, leaving_;
 };
 
 }  // namespace meshgrain

@@ -5,6 +5,8 @@
 
 #include "extract/face_repair.h"
 #include "util/collect.h"
+#include "util/index_marks.h"
+#include "util/indices.h"
 
 namespace meshgrain {
 namespace {
@@ -41,25 +43,33 @@ void FaceRepair::remove_doublets() {
   }
 }
 
-void FaceRepair::remove_diagonals(std::span<const Jump> jumps) {
+void FaceRepair::remove_diagonals(std::span<const Jump> jumps, const Context& context) {
   const auto is_diagonal = [&](Index h) {
     const auto& t = jumps[h / 2].t;
     return std::abs(t[0]) == 1 && std::abs(t[1]) == 1;
   };
-  const auto inner = [&](Index h) { return !map_.removed(h) && !hole_[h] && !hole_[h ^ 1]; };
-  // Diagonals of a triangle; one that is half of a square has one.
-  std::vector<std::uint8_t> count(map_.halfedges(), 0);
-  for (Index h = 0; h < map_.halfedges(); ++h) {
-    if (map_.removed(h) || hole_[h]) continue;
-    for (Index g : {h, map_.next(h), map_.prev(h)}) count[h] += is_diagonal(g);
-  }
-  const auto remove = [&](Index h, std::size_t most) {
-    if (map_.degree(h) + map_.degree(h + 1) - 2 <= most && may_remove(h)) map_.remove_edge(h);
+  // Of the triangle left of h; one that is half of a square has one.
+  const auto diagonals = [&](Index h) {
+    return is_diagonal(h) + is_diagonal(map_.next(h)) + is_diagonal(map_.prev(h));
   };
+  struct Diagonal {
+    Index h;
+    int beside;  // diagonals of the triangles on both sides
+  };
+  const auto look = [&](std::size_t begin, std::size_t end, std::vector<Diagonal>& out) {
+    for (auto e = static_cast<Index>(begin); e < end; ++e) {
+      const Index h = 2 * e, t = h + 1;
+      if (map_.removed(h) || hole_[h] || hole_[t] || !is_diagonal(h)) continue;
+      out.push_back({h, diagonals(h) + diagonals(t)});
+    }
+  };
+  const std::vector<Diagonal> all = collect<Diagonal>(jumps.size(), look, context);
   for (const int most : {2, 3, 4}) {
-    for (Index h = 0; h < 2 * jumps.size(); h += 2) {
-      if (!inner(h) || !is_diagonal(h)) continue;
-      if (count[h] + count[h + 1] <= most) remove(h, most == 2 ? 4 : 5);
+    const std::size_t most_corners = most == 2 ? 4 : 5;
+    for (const auto& [h, beside] : all) {
+      if (beside > most || map_.removed(h)) continue;
+      const std::size_t corners = map_.degree(h) + map_.degree(h + 1) - 2;
+      if (corners <= most_corners && may_remove(h)) map_.remove_edge(h);
     }
   }
 }
@@ -251,9 +261,22 @@ std::vector<Index> FaceRepair::ways_to_close(Index face) const {
   return result;
 }
 
-void FaceRepair::close_quads() {
-  for (Index h = 0; h < map_.halfedges(); ++h) {
-    if (closing_gain(h, 1)) close_quad(h);
+void FaceRepair::close_quads(const Context& context) {
+  IndexMarks marks;  // halfedges to look at: most quads need not be
+  const auto gains = [&](Index h) { return closing_gain(h, 1).has_value(); };
+  for (const Index h : indices_where(map_.halfedges(), gains, context)) marks.set(h);
+  for (Index h = marks.first(0); h != no_index; h = marks.first(h + 1)) {
+    if (!gains(h)) continue;
+    const Index kept = map_.origin(h);
+    close_quad(h);
+    // The corners of the faces there have other neighbours now.
+    map_.for_each_leaving(kept, [&](Index face) {
+      map_.for_orbit(face, [&](Index corner) {
+        map_.for_each_leaving(map_.origin(corner), [&](Index other) {
+          if (!hole_[other]) map_.for_orbit(other, [&](Index g) { marks.set(g); });
+        });
+      });
+    });
   }
 }
 

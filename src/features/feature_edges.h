@@ -18,6 +18,8 @@ class FeatureEdges {
   /// The line that the edge between two vertices is part of, or no_index.
   Index line(Index a, Index b) const;
   Hold hold(Index vertex) const { return static_cast<Hold>(hold_[vertex]); }
+  /// That of each vertex.
+  const std::vector<std::uint8_t>& holds() const { return hold_; }
 
  private:
   struct Edge {

@@ -4,48 +4,38 @@
 #include <utility>
 
 #include "finish/crossings.h"
-#include "mesh/vertex_faces.h"
 
 namespace meshgrain {
 
-CrossingGuard::CrossingGuard(Mesh& mesh, const std::vector<Index>& faces, const Context& context)
-    : mesh_(mesh), context_(context), vertices_(vertices_of(mesh, faces)) {
-  for (const Index v : vertices_) part_.positions.push_back(mesh.positions[v]);
-  std::vector<Index> corners;
-  for (const Index f : faces) {
-    corners.clear();
-    for (const Index v : std::as_const(mesh.faces)[f]) {
-      const auto at = std::ranges::lower_bound(vertices_, v) - vertices_.begin();
-      corners.push_back(static_cast<Index>(at));
-    }
-    part_.faces.push_back(corners);
-  }
-  crossings_ = find_crossings(part_, context_);
-}
+CrossingGuard::CrossingGuard(Mesh& mesh, std::span<const Index> faces, const Context& context)
+    : mesh_(mesh),
+      context_(context),
+      part_(part_of(mesh, faces)),
+      crossings_(find_crossings(part_.mesh, context)) {}
 
 void CrossingGuard::undo_new() {
-  const std::vector<Vec3> last = part_.positions;
-  for (std::size_t k = 0; k < vertices_.size(); ++k) {
-    part_.positions[k] = mesh_.positions[vertices_[k]];
+  const std::vector<Vec3> last = part_.mesh.positions;
+  for (std::size_t k = 0; k < part_.vertices.size(); ++k) {
+    part_.mesh.positions[k] = mesh_.positions[part_.vertices[k]];
   }
-  if (part_.positions == last) return;
+  if (part_.mesh.positions == last) return;
   std::vector<std::array<Index, 2>> crossings;
   for (bool changed = true; changed;) {
     changed = false;
-    crossings = find_crossings(part_, context_);
+    crossings = find_crossings(part_.mesh, context_);
     for (const auto& pair : crossings) {
       if (std::ranges::binary_search(crossings_, pair)) continue;
       for (const Index f : pair) {
-        for (const Index v : std::as_const(part_.faces)[f]) {
-          changed = changed || part_.positions[v] != last[v];
-          part_.positions[v] = last[v];
+        for (const Index v : std::as_const(part_.mesh.faces)[f]) {
+          changed = changed || part_.mesh.positions[v] != last[v];
+          part_.mesh.positions[v] = last[v];
         }
       }
     }
   }
   crossings_ = std::move(crossings);
-  for (std::size_t k = 0; k < vertices_.size(); ++k) {
-    mesh_.positions[vertices_[k]] = part_.positions[k];
+  for (std::size_t k = 0; k < part_.vertices.size(); ++k) {
+    mesh_.positions[part_.vertices[k]] = part_.mesh.positions[k];
   }
 }
 

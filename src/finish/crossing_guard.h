@@ -1,8 +1,10 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
+#include "mesh/part.h"
 #include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
 
@@ -13,7 +15,7 @@ namespace meshgrain {
 class CrossingGuard {
  public:
   /// The mesh and the context must outlive this.
-  CrossingGuard(Mesh& mesh, const std::vector<Index>& faces, const Context& context);
+  CrossingGuard(Mesh& mesh, std::span<const Index> faces, const Context& context);
 
   /// Puts the vertices of faces that pass through others, and did not at the last call, back to
   /// where they were then.
@@ -22,8 +24,7 @@ class CrossingGuard {
  private:
   Mesh& mesh_;
   const Context& context_;
-  std::vector<Index> vertices_;  // of those faces
-  Mesh part_;                    // those faces
+  Part part_;  // those faces
   std::vector<std::array<Index, 2>> crossings_;
 };
 

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <vector>
+
+#include "finish/box_cells.h"
 #include "measure/bvh.h"
+#include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
 
 namespace meshgrain {
@@ -9,10 +13,9 @@ namespace meshgrain {
 /// side alone, but needs no tree.
 class NearSurface {
  public:
-  /// `part`: of triangles.
-  explicit NearSurface(Mesh part);
-  NearSurface(const NearSurface&) = delete;
-  NearSurface& operator=(const NearSurface&) = delete;
+  /// The triangles with a corner in one of the cells; none of a point cloud. The surface must
+  /// outlive this.
+  NearSurface(const Mesh& surface, const BoxCells& cells, const Context& context);
 
   struct Nearest {
     float distance;
@@ -22,9 +25,8 @@ class NearSurface {
   Nearest nearest(const Vec3& p, float limit) const;
 
  private:
-  Mesh part_;
-  std::vector<Vec3> normals_;  // of its triangles
   Bvh tree_;
+  std::vector<Vec3> normals_;  // of its triangles
 };
 
 }  // namespace meshgrain

@@ -16,7 +16,7 @@
 #include "finish/face_shape.h"
 #include "finish/near_surface.h"
 #include "finish/vertex_batches.h"
-#include "util/collect.h"
+#include "util/indices.h"
 #include "util/sort_unique.h"
 
 namespace meshgrain {
@@ -32,7 +32,7 @@ class OwnSide {
     std::vector<Index> watched = turned_faces(bent_faces(normals));
     if (watched.empty()) return;
     const BoxCells cells = cells_around(watched, reach);
-    const NearSurface near(placement_.projector().cut_out(cells, context_));
+    const NearSurface near(placement_.projector().surface(), cells, context_);
     near_ = &near;
     movable_ = vertices_of(mesh_, with_rings(mesh_, around_, watched, 1));
     std::erase_if(movable_, [&](Index v) { return placement_.is_on_line(v); });
@@ -87,14 +87,11 @@ class OwnSide {
   /// parts on the wrong side are among them, and they are found at once.
   std::vector<Index> bent_faces(const std::vector<Vec3>& normals) const {
     constexpr float bent = 0.6f;  // cosine
-    const auto look = [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
-      for (auto f = static_cast<Index>(begin); f < end; ++f) {
-        const Vec3 normal = area_vector(face(f), mesh_.positions).stableNormalized();
-        const auto is_bent = [&](Index v) { return normal.dot(normals[v]) < bent; };
-        if (std::ranges::any_of(face(f), is_bent)) out.push_back(f);
-      }
+    const auto is_bent = [&](Index f) {
+      const Vec3 normal = area_vector(face(f), mesh_.positions).stableNormalized();
+      return std::ranges::any_of(face(f), [&](Index v) { return normal.dot(normals[v]) < bent; });
     };
-    return collect<Index>(mesh_.faces.size(), look, context_);
+    return indices_where(mesh_.faces.size(), is_bent, context_);
   }
 
   /// Of some faces, those with a sample on the wrong side.
@@ -102,7 +99,7 @@ class OwnSide {
     if (faces.empty()) return {};
     turned_.assign(mesh_.faces.size(), 0);
     const BoxCells cells = cells_around(faces, reach_of_samples);
-    const NearSurface near(placement_.projector().cut_out(cells, context_));
+    const NearSurface near(placement_.projector().surface(), cells, context_);
     near_ = &near;
     shift_samples(0);
     measure(faces, most_samples);
@@ -296,12 +293,8 @@ class OwnSide {
   }
 
   std::vector<Index> faces_in(const BoxCells& cells) const {
-    const auto look = [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
-      for (auto f = static_cast<Index>(begin); f < end; ++f) {
-        if (cells.touches(face_box(mesh_, f))) out.push_back(f);
-      }
-    };
-    return collect<Index>(mesh_.faces.size(), look, context_);
+    const auto is_in = [&](Index f) { return cells.touches(face_box(mesh_, f)); };
+    return indices_where(mesh_.faces.size(), is_in, context_);
   }
 
   Mesh& mesh_;

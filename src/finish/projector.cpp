@@ -4,13 +4,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <unordered_set>
-#include <utility>
 
-#include "util/collect.h"
-#include "util/sort_unique.h"
+#include "mesh/part.h"
 #include "util/triangle.h"
 
 namespace meshgrain {
@@ -65,34 +62,7 @@ std::optional<Mesh> Projector::cut_out(const Eigen::AlignedBox3f& box, std::vect
       }
     }
   }
-  return cut_out(std::vector<Index>(faces.begin(), faces.end()));
-}
-
-Mesh Projector::cut_out(const BoxCells& cells, const Context& context) const {
-  if (surface_.is_point_cloud()) return Mesh();
-  const auto look = [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
-    for (std::size_t v = begin; v < end; ++v) {
-      if (!cells.contains(surface_.positions[v])) continue;
-      out.insert(out.end(), around_[v].begin(), around_[v].end());
-    }
-  };
-  return cut_out(collect<Index>(surface_.positions.size(), look, context));
-}
-
-Mesh Projector::cut_out(std::vector<Index> faces) const {
-  sort_unique(faces);
-  std::vector<Index> vertices = vertices_of(surface_, faces);
-  Mesh piece;
-  for (const Index v : vertices) piece.positions.push_back(surface_.positions[v]);
-  for (const Index f : faces) {
-    std::array<Index, 3> corners;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto at = std::ranges::lower_bound(vertices, surface_.faces[f][k]);
-      corners[k] = static_cast<Index>(at - vertices.begin());
-    }
-    piece.faces.push_back(corners);
-  }
-  return piece;
+  return part_of(surface_, std::vector<Index>(faces.begin(), faces.end())).mesh;
 }
 
 Vec3 Projector::project(const Vec3& p, Index& seed) const {

@@ -4,9 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "finish/box_cells.h"
 #include "mesh/vertex_faces.h"
-#include "meshgrain/context.h"
 #include "meshgrain/graph.h"
 
 namespace meshgrain {
@@ -19,6 +17,8 @@ class Projector {
   /// `graph` was built on; all must outlive this.
   Projector(const Mesh& surface, const VertexFaces& around, const Graph& graph)
       : surface_(surface), graph_(graph), around_(around) {}
+
+  const Mesh& surface() const { return surface_; }
 
   /// The point of the surface nearest to `p`. `seed` is where to start (a vertex of the surface),
   /// and becomes the one where the walk ended.
@@ -47,11 +47,7 @@ class Projector {
   std::optional<Mesh> cut_out(const Eigen::AlignedBox3f& box, std::vector<Index> from,
                               std::size_t most) const;
 
-  /// All faces with a corner in one of the cells; none of a point cloud.
-  Mesh cut_out(const BoxCells& cells, const Context& context) const;
-
  private:
-  Mesh cut_out(std::vector<Index> faces) const;
   /// Goes on to the nearest of the neighbours in the graph, while that is nearer to p.
   void walk_to_nearest(const Vec3& p, Index& seed) const;
   Vec3 nearest_around(const Vec3& p, Index vertex, Index& nearest_corner) const;

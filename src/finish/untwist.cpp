@@ -9,7 +9,7 @@
 #include "finish/face_shape.h"
 #include "mesh/border.h"
 #include "mesh/vertex_faces.h"
-#include "util/collect.h"
+#include "util/indices.h"
 
 namespace meshgrain {
 namespace {
@@ -60,12 +60,8 @@ class Untwisting {
   }
 
   std::vector<Index> twisted_quads() const {
-    const auto look = [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
-      for (auto f = static_cast<Index>(begin); f < end; ++f) {
-        if (is_twisted(f)) out.push_back(f);
-      }
-    };
-    return collect<Index>(mesh_.faces.size(), look, context_);
+    return indices_where(
+        mesh_.faces.size(), [&](Index f) { return is_twisted(f); }, context_);
   }
 
   /// What a face is worth if either the surface or its neighbours say which side is up.

@@ -7,7 +7,7 @@
 #include "graph/color_blocks.h"
 #include "graph/match_pairs.h"
 #include "graph/merge_edges.h"
-#include "util/collect.h"
+#include "util/indices.h"
 
 namespace meshgrain {
 namespace {
@@ -22,14 +22,8 @@ class Groups {
       : partner_(partner),
         first_follower_(partner.size(), no_index),
         next_follower_(std::make_unique_for_overwrite<Index[]>(partner.size())) {
-    const std::vector<Index> followers = collect<Index>(
-        partner.size(),
-        [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
-          for (auto i = static_cast<Index>(begin); i < end; ++i) {
-            if (is_follower(i)) out.push_back(i);
-          }
-        },
-        context);
+    const std::vector<Index> followers = indices_where(
+        partner.size(), [&](Index i) { return is_follower(i); }, context);
     for (std::size_t k = followers.size(); k-- > 0;) {
       const Index i = followers[k];
       next_follower_[i] = std::exchange(first_follower_[leader(i)], i);

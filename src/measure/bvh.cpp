@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <utility>
 
 #include "util/triangle.h"
 
@@ -18,23 +19,26 @@ double squared_distance_to_box(const Eigen::Vector3d& p, const Vec3& low, const 
 
 }  // namespace
 
-Bvh::Bvh(const Mesh& mesh) : positions_(mesh.positions), triangles_(triangles_of(mesh)) {
-  const bool cloud = mesh.is_point_cloud();
-  const std::size_t count = cloud ? positions_.size() : triangles_.size();
+Bvh::Bvh(const Mesh& mesh) : Bvh(mesh.positions, triangles_of(mesh)) {
+  if (mesh.is_point_cloud()) build(positions_);
+}
+
+Bvh::Bvh(const std::vector<Vec3>& positions, std::vector<Triangle> triangles)
+    : positions_(positions), triangles_(std::move(triangles)) {
+  std::vector<Vec3> middles;
+  middles.reserve(triangles_.size());
+  for (const auto& [a, b, c] : triangles_) {
+    middles.push_back((positions_[a] + positions_[b] + positions_[c]) / 3);
+  }
+  build(middles);
+}
+
+void Bvh::build(const std::vector<Vec3>& middles) {
+  const std::size_t count = middles.size();
   items_.resize(count);
   std::iota(items_.begin(), items_.end(), Index{0});
   nodes_.reserve(count / 2 + 8);
-  if (count == 0) return;
-  if (cloud) {
-    build(0, static_cast<Index>(count), positions_);
-    return;
-  }
-  std::vector<Vec3> middles(count);
-  for (std::size_t t = 0; t < count; ++t) {
-    const auto [a, b, c] = triangles_[t];
-    middles[t] = (positions_[a] + positions_[b] + positions_[c]) / 3;
-  }
-  build(0, static_cast<Index>(count), middles);
+  if (count > 0) build(0, static_cast<Index>(count), middles);
 }
 
 Index Bvh::build(Index begin, Index end, const std::vector<Vec3>& middles) {

@@ -8,8 +8,8 @@
 #include "mesh/midpoint.h"
 #include "meshgrain/error.h"
 #include "meshgrain/surface.h"
-#include "util/collect.h"
 #include "util/edge_of.h"
+#include "util/indices.h"
 #include "util/sort_unique.h"
 
 namespace meshgrain {
@@ -38,17 +38,11 @@ using Triangle = std::array<Index, 3>;
 template <typename Limit>
 std::vector<Index> faces_to_split(const Mesh& mesh, const Limit& limit, const Context& context) {
   const Index* const corners = mesh.faces.corners().data();
-  return collect<Index>(
-      mesh.faces.size(),
-      [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
-        for (std::size_t f = begin; f < end; ++f) {
-          const Index a = corners[3 * f], b = corners[3 * f + 1], c = corners[3 * f + 2];
-          const bool any =
-              is_long(mesh, limit, a, b) | is_long(mesh, limit, b, c) | is_long(mesh, limit, c, a);
-          if (any) out.push_back(static_cast<Index>(f));
-        }
-      },
-      context);
+  const auto has_long_edge = [&](std::size_t f) {
+    const Index a = corners[3 * f], b = corners[3 * f + 1], c = corners[3 * f + 2];
+    return is_long(mesh, limit, a, b) | is_long(mesh, limit, b, c) | is_long(mesh, limit, c, a);
+  };
+  return indices_where(mesh.faces.size(), has_long_edge, context);
 }
 
 template <typename Limit>

@@ -16,18 +16,24 @@ class IndexMarks {
     words_[i / 64] |= std::uint64_t{1} << i % 64;
   }
 
-  /// Takes the mark from the first in [i, end) that has one, and returns it; or no_index. In a
-  /// loop, what is marked behind waits for the next one.
-  Index take(Index i, Index end) {
+  void clear(Index i) { words_[i / 64] &= ~(std::uint64_t{1} << i % 64); }
+
+  /// The first in [i, end) that has a mark, or no_index.
+  Index first(Index i, Index end = no_index) const {
     for (std::size_t w = i / 64; w < words_.size(); ++w, i = 0) {
       const std::uint64_t rest = words_[w] >> i % 64 << i % 64;
       if (rest == 0) continue;
-      const auto first = static_cast<Index>(64 * w + std::countr_zero(rest));
-      if (first >= end) break;
-      words_[w] &= ~(rest & -rest);
-      return first;
+      const auto found = static_cast<Index>(64 * w + std::countr_zero(rest));
+      return found < end ? found : no_index;
     }
     return no_index;
+  }
+
+  /// Takes the mark from that. In a loop, what is marked behind waits for the next one.
+  Index take(Index i, Index end) {
+    const Index found = first(i, end);
+    if (found != no_index) clear(found);
+    return found;
   }
 
  private:
