@@ -350,7 +350,7 @@ TEST(FaceRepair, QuadsCloseWithoutAChangeOfTopologyOrBorder) {
       repair.close_quad(ways[way]);
       repair.remove_doublets();
       std::vector<Index> vertex;
-      const Extraction after = collect_faces(parts.map, repair, parts.clusters, vertex);
+      const Extraction after = collect_faces(parts.map, repair, parts.clusters, vertex, Context());
       const MeshStatistics s = mesh_statistics(after.mesh);
       EXPECT_LT(s.faces, before.faces);
       EXPECT_EQ(s.quads, s.faces);
@@ -443,7 +443,7 @@ TEST(Extract, VerticesWithFarTooManyEdgesAreCutInTwo) {
   FaceRepair repair(parts.map, parts.clusters, 4, std::move(parts.holes), std::move(parts.lines));
   repair.open_vertices();
   std::vector<Index> vertex;
-  const Mesh result = collect_faces(parts.map, repair, parts.clusters, vertex).mesh;
+  const Mesh result = collect_faces(parts.map, repair, parts.clusters, vertex, Context()).mesh;
   const MeshStatistics after = mesh_statistics(result);
   EXPECT_EQ(after.faces, std::size_t{2 * n + 2});
   EXPECT_EQ(after.euler, 2);

@@ -50,7 +50,7 @@ Extraction paired(const Extraction& extraction) {
   FaceRepair repair(parts.map, parts.clusters, 4, std::move(parts.holes), std::move(parts.lines));
   pair_odd_faces(parts.map, repair);
   std::vector<Index> vertex;
-  return collect_faces(parts.map, repair, parts.clusters, vertex);
+  return collect_faces(parts.map, repair, parts.clusters, vertex, Context());
 }
 
 void expect_quads(const Mesh& mesh) {

@@ -277,12 +277,12 @@ class BorderLock {
 };
 
 /// The mesh of a map, and for each vertex of the map that of the mesh.
-std::vector<Index> collect(ExtractionMap& mesh, Extraction& extraction) {
+std::vector<Index> collect(ExtractionMap& mesh, Extraction& extraction, const Context& context) {
   constexpr int any_posy = 4;
   FaceRepair repair(mesh.map, mesh.clusters, any_posy, std::move(mesh.holes),
                     std::move(mesh.lines));
   std::vector<Index> vertex;
-  extraction = collect_faces(mesh.map, repair, mesh.clusters, vertex);
+  extraction = collect_faces(mesh.map, repair, mesh.clusters, vertex, context);
   return vertex;
 }
 
@@ -294,7 +294,7 @@ void lock_borders(Extraction& extraction, const BorderLoops& borders, const Grap
   ExtractionMap mesh(extraction, context);
   BorderLock lock(mesh, borders, graph, faces);
   lock.run();
-  const std::vector<Index> vertex = collect(mesh, extraction);
+  const std::vector<Index> vertex = collect(mesh, extraction, context);
   for (const Collar& collar : lock.collars(vertex)) {
     add_collar(extraction, collar, graph, faces != OutputFaces::triangles);
   }
@@ -307,7 +307,7 @@ bool improve_border_faces(Extraction& extraction, OutputFaces faces, const Conte
   ExtractionMap mesh(extraction, context);
   if (mesh.map.vertices() != extraction.mesh.positions.size()) return false;
   if (!BorderFaces(mesh, kind).improve()) return false;
-  collect(mesh, extraction);
+  collect(mesh, extraction, context);
   return true;
 }
 

@@ -8,6 +8,7 @@
 #include "coarsen/collapsing_piece.h"
 #include "mesh/keep_vertices.h"
 #include "meshgrain/surface.h"
+#include "util/indices.h"
 
 namespace meshgrain {
 namespace {
@@ -106,12 +107,11 @@ class Round {
   }
 
   std::vector<Index> compact(const std::vector<std::vector<Triangle>>& left) {
-    std::vector<Index> kept;
+    std::vector<Index> kept = indices_where(
+        is_gone_.size(), [&](Index v) { return !is_gone_[v]; }, context_);
     std::vector<Index>& number = place_;  // which is of no use any more
-    for (Index v = 0; v < mesh_.positions.size(); ++v) {
-      number[v] = static_cast<Index>(kept.size());
-      if (!is_gone_[v]) kept.push_back(v);
-    }
+    for_indices(
+        kept.size(), [&](Index k) { number[kept[k]] = k; }, context_);
     keep_vertices(mesh_, kept);
     mesh_.positions.shrink_to_fit();
     for (std::size_t k = 0; k < kept.size(); ++k) stays_[k] = stays_[kept[k]];

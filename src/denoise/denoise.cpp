@@ -31,7 +31,7 @@ bool may_be_noisy(const Mesh& triangles, const Context& context) {
 
 CreaseLengths lengths_without_noise(Mesh& sample, const Context& context) {
   NormalFilter(sample, NormalFilter::Border::moves, context).run();
-  return crease_lengths(sample, sharp_edges(sample, flat_degrees, context));
+  return crease_lengths(sample, sharp_edges(sample, flat_degrees, context), context);
 }
 
 /// Some of the surface tells at once that most scans are no part, and less of it that most
@@ -46,7 +46,8 @@ bool is_noisy_part(const Mesh& triangles, const Context& context) {
   const CreaseLengths found = lengths_without_noise(sample, context);
   if (found.clear <= margin * clearly * found.doubtful) return false;
   // Else there are creases without noise.
-  return mechanical_creases(triangles, rim_and_sharp_edges(triangles, flat_degrees, context))
+  return mechanical_creases(triangles, rim_and_sharp_edges(triangles, flat_degrees, context),
+                            context)
       .empty();
 }
 
@@ -56,7 +57,8 @@ bool sharpen_noisy_part(Mesh& triangles, double edge_length, const Context& cont
   if (!is_noisy_part(triangles, context)) return false;
   Mesh smooth = triangles;
   NormalFilter(smooth, NormalFilter::Border::stays, context).run();
-  const auto found = clear_creases(smooth, sharp_edges(smooth, flat_degrees, context), clearly);
+  const auto found =
+      clear_creases(smooth, sharp_edges(smooth, flat_degrees, context), clearly, context);
   if (found.empty()) return false;
   const auto creases = connect_creases(smooth, found, edge_length, context);
   smooth.marked_edges.insert(smooth.marked_edges.end(), creases.begin(), creases.end());

@@ -2,25 +2,45 @@
 
 #include <algorithm>
 
+#include "util/collect.h"
+
 namespace meshgrain {
+namespace {
+
+/// Whether h is the lowest halfedge of its orbit.
+bool is_lowest(const PolygonMap& map, Index h) {
+  Index g = map.next(h);
+  while (g > h) g = map.next(g);
+  return g == h;
+}
+
+/// The lowest halfedge of each orbit that is a face: no hole, and a simple polygon.
+std::vector<Index> find_faces(const PolygonMap& map, const FaceRepair& repair,
+                              const Context& context) {
+  const auto look = [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+    std::vector<Index> corners;
+    for (auto h = static_cast<Index>(begin); h < end; ++h) {
+      if (map.removed(h) || repair.is_hole(h) || !is_lowest(map, h)) continue;
+      corners.clear();
+      map.for_orbit(h, [&](Index g) { corners.push_back(map.origin(g)); });
+      std::sort(corners.begin(), corners.end());
+      const bool is_simple = std::adjacent_find(corners.begin(), corners.end()) == corners.end();
+      if (corners.size() >= 3 && is_simple) out.push_back(h);
+    }
+  };
+  return collect<Index>(map.halfedges(), look, context);
+}
+
+}  // namespace
 
 Extraction collect_faces(const PolygonMap& map, const FaceRepair& repair, const Clusters& clusters,
-                         std::vector<Index>& vertex) {
+                         std::vector<Index>& vertex, const Context& context) {
   Extraction result;
   vertex.assign(clusters.positions.size(), no_index);
-  std::vector<std::uint8_t> seen(map.halfedges(), 0);
-  std::vector<Index> orbit, face;
-  for (Index h = 0; h < map.halfedges(); ++h) {
-    if (map.removed(h) || seen[h]) continue;
-    map.orbit(h, orbit);
-    for (const Index g : orbit) seen[g] = 1;
-    if (repair.is_hole(h) || orbit.size() < 3) continue;
+  std::vector<Index> face;
+  for (const Index h : find_faces(map, repair, context)) {
     face.clear();
-    for (const Index g : orbit) face.push_back(map.origin(g));
-    std::sort(face.begin(), face.end());
-    if (std::adjacent_find(face.begin(), face.end()) != face.end()) continue;
-    face.clear();
-    for (const Index g : orbit) {
+    map.for_orbit(h, [&](Index g) {
       Index& v = vertex[map.origin(g)];
       if (v == no_index) {
         v = static_cast<Index>(result.mesh.positions.size());
@@ -29,7 +49,7 @@ Extraction collect_faces(const PolygonMap& map, const FaceRepair& repair, const 
         result.nodes.push_back(clusters.nodes[map.origin(g)]);
       }
       face.push_back(v);
-    }
+    });
     result.mesh.faces.push_back(face);
   }
   for (Index h = 0; h < map.halfedges(); h += 2) {

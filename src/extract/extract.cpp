@@ -94,7 +94,7 @@ Extraction extract_from_graph(const Graph& graph, const OrientationField& orient
   repair.split_large();
   make_regular(repair, position.posy, context);
   std::vector<Index> vertex;
-  Extraction result = collect_faces(map, repair, clusters, vertex);
+  Extraction result = collect_faces(map, repair, clusters, vertex, context);
   drop_fragments(result, graph);
   return result;
 }
@@ -179,7 +179,7 @@ Extraction extract_from_mesh(const Graph& graph, const OrientationField& orienta
     make_regular(repair, position.posy, context);
   }
   std::vector<Index> vertex;
-  Extraction result = collect_faces(lattice.map, repair, lattice.clusters, vertex);
+  Extraction result = collect_faces(lattice.map, repair, lattice.clusters, vertex, context);
   if (!options.manifold) join_pieces(result, collapsed.meetings, vertex, context);
   return result;
 }

@@ -19,7 +19,7 @@ std::size_t change_faces(Extraction& extraction, int posy, const Change& change,
                     std::move(parts.lines));
   const std::size_t done = change(repair);
   std::vector<Index> vertex;
-  if (done > 0) extraction = collect_faces(parts.map, repair, parts.clusters, vertex);
+  if (done > 0) extraction = collect_faces(parts.map, repair, parts.clusters, vertex, context);
   return done;
 }
 

@@ -35,7 +35,7 @@ RimAndCreases rim_and_creases(const Mesh& mesh, const FeatureOptions& options,
                               const Context& context) {
   if (options.creases == Creases::automatic) {
     auto found = rim_and_sharp_edges(mesh, flat_degrees, context);
-    Edges creases = mechanical_creases(mesh, found);
+    Edges creases = mechanical_creases(mesh, found, context);
     return {std::move(found.rim), std::move(creases)};
   }
   if (options.creases == Creases::by_angle) {

@@ -7,6 +7,7 @@
 
 #include "features/clean_lines.h"
 #include "features/fading_creases.h"
+#include "util/sum.h"
 
 namespace meshgrain {
 namespace {
@@ -19,23 +20,28 @@ double cosine_of(double degrees) {
   return std::cos(degrees * std::numbers::pi / 180);
 }
 
-double length_above(const Mesh& mesh, std::span<const SharpEdge> edges, double degrees) {
+double length_above(const Mesh& mesh, std::span<const SharpEdge> edges, double degrees,
+                    const Context& context) {
   const double cosine = cosine_of(degrees);
-  double sum = 0;
-  for (const SharpEdge& edge : edges) {
-    const auto [a, b] = edge.ends;
-    if (edge.cosine < cosine) sum += (mesh.positions[a] - mesh.positions[b]).norm();
-  }
-  return sum;
+  const auto length = [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (const auto& [ends, cosine_here] : edges.subspan(begin, end - begin)) {
+      if (!(cosine_here < cosine)) continue;
+      sum += (mesh.positions[ends[0]] - mesh.positions[ends[1]]).norm();
+    }
+    return sum;
+  };
+  return sum_over_ranges(edges.size(), length, context);
 }
 
 /// Flags of those sharper than an angle at which it matters least.
-std::vector<std::uint8_t> above_best_threshold(const Mesh& mesh, std::span<const SharpEdge> edges) {
+std::vector<std::uint8_t> above_best_threshold(const Mesh& mesh, std::span<const SharpEdge> edges,
+                                               const Context& context) {
   double threshold = sharp, least = std::numeric_limits<double>::infinity();
   constexpr double lowest = 20, window = 1.25, step = 2;
   for (double degrees = sharp; degrees >= lowest; degrees -= step) {
-    const double doubtful =
-        length_above(mesh, edges, degrees / window) - length_above(mesh, edges, degrees * window);
+    const double doubtful = length_above(mesh, edges, degrees / window, context) -
+                            length_above(mesh, edges, degrees * window, context);
     if (doubtful >= least) continue;
     least = doubtful;
     threshold = degrees;
@@ -57,25 +63,27 @@ std::vector<std::array<Index, 2>> flagged(std::span<const SharpEdge> edges,
 
 }  // namespace
 
-CreaseLengths crease_lengths(const Mesh& mesh, std::span<const SharpEdge> edges) {
-  const double clear = length_above(mesh, edges, sharp);
-  return {clear, length_above(mesh, edges, flat_degrees) - clear};
+CreaseLengths crease_lengths(const Mesh& mesh, std::span<const SharpEdge> edges,
+                             const Context& context) {
+  const double clear = length_above(mesh, edges, sharp, context);
+  return {clear, length_above(mesh, edges, flat_degrees, context) - clear};
 }
 
 std::vector<std::array<Index, 2>> clear_creases(const Mesh& mesh, std::span<const SharpEdge> edges,
-                                                double clearly) {
-  const CreaseLengths lengths = crease_lengths(mesh, edges);
+                                                double clearly, const Context& context) {
+  const CreaseLengths lengths = crease_lengths(mesh, edges, context);
   if (lengths.clear <= clearly * lengths.doubtful) return {};
-  return flagged(edges, above_best_threshold(mesh, edges));
+  return flagged(edges, above_best_threshold(mesh, edges, context));
 }
 
 std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh,
-                                                     const RimAndSharpEdges& edges) {
-  const CreaseLengths lengths = crease_lengths(mesh, edges.sharp);
+                                                     const RimAndSharpEdges& edges,
+                                                     const Context& context) {
+  const CreaseLengths lengths = crease_lengths(mesh, edges.sharp, context);
   const bool is_mechanical =
       lengths.clear > lengths.doubtful || share_of_clean_lines(mesh, edges, sharp) > clean_enough;
   if (!is_mechanical) return {};
-  std::vector<std::uint8_t> is_crease = above_best_threshold(mesh, edges.sharp);
+  std::vector<std::uint8_t> is_crease = above_best_threshold(mesh, edges.sharp, context);
   follow_fading_creases(mesh, edges.sharp, is_crease);
   return flagged(edges.sharp, is_crease);
 }

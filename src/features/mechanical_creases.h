@@ -18,17 +18,20 @@ inline constexpr double flat_degrees = 10;
 struct CreaseLengths {
   double clear, doubtful;
 };
-CreaseLengths crease_lengths(const Mesh& triangles, std::span<const SharpEdge> edges);
+CreaseLengths crease_lengths(const Mesh& triangles, std::span<const SharpEdge> edges,
+                             const Context& context);
 
 /// The edges sharper than an angle at which it matters least, if there is `clearly` more of clear
 /// creases than of what is neither sharp nor flat; else none. `edges` are all that are not flat.
 std::vector<std::array<Index, 2>> clear_creases(const Mesh& triangles,
-                                                std::span<const SharpEdge> edges, double clearly);
+                                                std::span<const SharpEdge> edges, double clearly,
+                                                const Context& context);
 
 /// The creases of a mechanical part; nothing for a sculpture or a scan, whose sharp edges are
 /// detail or noise. In a part most edges are either nearly flat or creases; or, where coarse facets
 /// round it, its sharp edges make clean lines. `edges` are all that are not flat.
 std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& triangles,
-                                                     const RimAndSharpEdges& edges);
+                                                     const RimAndSharpEdges& edges,
+                                                     const Context& context);
 
 }  // namespace meshgrain

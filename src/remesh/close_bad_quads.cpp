@@ -130,7 +130,7 @@ class Closing {
       repair.close_quad(all[way]);
       repair.remove_doublets();
       std::vector<Index> vertex;
-      Extraction changed = collect_faces(parts.map, repair, parts.clusters, vertex);
+      Extraction changed = collect_faces(parts.map, repair, parts.clusters, vertex, context_);
       if (piece.faces.size() - changed.mesh.faces.size() > most) continue;
       --tries_left_;
       smooth(changed, surface_, around_surface_, graph_, smoothing_, context_);
