@@ -24,11 +24,6 @@ struct JumpMap {
     const Jump& stored = jumps[h / 2];
     return h % 2 == 0 ? stored : reversed(stored, posy);
   }
-  /// That of jump(h) alone, or posy where that is nothing.
-  int rotation(Index h) const {
-    const int stored = jumps[h / 2].rotation;
-    return h % 2 == 0 ? stored : posy - stored;
-  }
   void set_jump(Index h, const Jump& jump) {
     jumps[h / 2] = h % 2 == 0 ? jump : reversed(jump, posy);
   }

@@ -31,11 +31,6 @@ class LatticeMesh : public JumpMap {
   LatticeTriangle triangle(Index h) const {
     return {posy, {jump(h), jump(map.next(h)), jump(map.prev(h))}};
   }
-  /// Whether that holds a singularity of the orientation field.
-  bool is_cone(Index h) const {
-    const int turns = rotation(h) + rotation(map.next(h)) + rotation(map.prev(h));
-    return turns % posy != 0;
-  }
   /// Whether the target edge length varies over that triangle.
   bool is_graded(Index h) const;
   /// Whether h has a triangle on its left, and is the halfedge that stands for it.

@@ -322,7 +322,7 @@ class LatticeRepair {
     for (Index h = swings_.take(0, count); h != no_index; h = swings_.take(h + 1, count)) {
       const Index t = PolygonMap::twin(h);
       if (map_.removed(h) || lattice_.holes[h] || lattice_.holes[t]) continue;
-      if (!lattice_.is_cone(h) || lattice_.is_cone(t)) continue;
+      if (!lattice_.triangle(h).is_cone() || lattice_.triangle(t).is_cone()) continue;
       const std::array<Piece, 2> before{piece(h), piece(t)};
       const Jump back = composed(before[0].lattice.around[1], before[0].lattice.around[2], posy);
       std::array<Piece, 2> after = before;

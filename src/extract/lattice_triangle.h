@@ -34,7 +34,10 @@ struct LatticeTriangle {
     return composed(composed(around[corner], around[(corner + 1) % 3], posy),
                     around[(corner + 2) % 3], posy);
   }
-  bool is_cone() const { return sum().rotation != 0; }
+  /// Told by the rotations alone: most triangles are none.
+  bool is_cone() const {
+    return (around[0].rotation + around[1].rotation + around[2].rotation) % posy != 0;
+  }
   bool is_plane() const { return sum().rotation == 0 && sum().is_zero(); }
 
   /// Twice the area, in cells: 1 for half a cell, negative if the triangle is turned over. That of

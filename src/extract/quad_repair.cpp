@@ -263,6 +263,11 @@ std::vector<Index> FaceRepair::ways_to_close(Index face) const {
 
 void FaceRepair::close_quads(const Context& context) {
   IndexMarks marks;  // halfedges to look at: most quads need not be
+  const auto mark_faces = [&](Index corner) {
+    map_.for_each_leaving(map_.origin(corner), [&](Index face) {
+      if (!hole_[face]) map_.for_orbit(face, [&](Index h) { marks.set(h); });
+    });
+  };
   const auto gains = [&](Index h) { return closing_gain(h, 1).has_value(); };
   for (const Index h : indices_where(map_.halfedges(), gains, context)) marks.set(h);
   for (Index h = marks.first(0); h != no_index; h = marks.first(h + 1)) {
@@ -270,13 +275,7 @@ void FaceRepair::close_quads(const Context& context) {
     const Index kept = map_.origin(h);
     close_quad(h);
     // The corners of the faces there have other neighbours now.
-    map_.for_each_leaving(kept, [&](Index face) {
-      map_.for_orbit(face, [&](Index corner) {
-        map_.for_each_leaving(map_.origin(corner), [&](Index other) {
-          if (!hole_[other]) map_.for_orbit(other, [&](Index g) { marks.set(g); });
-        });
-      });
-    });
+    map_.for_each_leaving(kept, [&](Index face) { map_.for_orbit(face, mark_faces); });
   }
 }
 

@@ -104,6 +104,11 @@ class OwnSide {
     shift_samples(0);
     measure(faces, most_samples);
     near_ = nullptr;
+    return turned_among(faces);
+  }
+
+  /// As they were measured last.
+  std::vector<Index> turned_among(const std::vector<Index>& faces) const {
     std::vector<Index> turned;
     std::ranges::copy_if(faces, std::back_inserter(turned),
                          [&](Index f) { return turned_[f] > 0; });
@@ -143,10 +148,7 @@ class OwnSide {
   }
 
   std::vector<Index> vertices_of_turned(const std::vector<Index>& faces) const {
-    std::vector<Index> turned;
-    std::ranges::copy_if(faces, std::back_inserter(turned),
-                         [&](Index f) { return turned_[f] > 0; });
-    std::vector<Index> vertices = vertices_of(mesh_, turned);
+    std::vector<Index> vertices = vertices_of(mesh_, turned_among(faces));
     std::erase_if(vertices, [&](Index v) { return !std::ranges::binary_search(movable_, v); });
     return vertices;
   }

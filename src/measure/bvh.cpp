@@ -37,7 +37,7 @@ void Bvh::build(const std::vector<Vec3>& middles) {
   const std::size_t count = middles.size();
   items_.resize(count);
   std::iota(items_.begin(), items_.end(), Index{0});
-  nodes_.reserve(count / 2 + 8);
+  nodes_.reserve(2 * count);
   if (count > 0) build(0, static_cast<Index>(count), middles);
 }
 
