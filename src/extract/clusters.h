@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -9,19 +8,19 @@
 
 namespace meshgrain {
 
-/// The graph G' of section 3.8 after its collapse: one cluster of input nodes an output vertex.
+/// What input nodes become after the collapse of section 3.8: one cluster an output vertex.
 struct Clusters {
   std::vector<Vec3> positions;
   std::vector<Vec3> normals;
-  std::vector<float> cover;                 // area, in units of a lattice cell as large as the mean
-  std::vector<Index> nodes;                 // the member nearest to the position
-  std::vector<std::array<Index, 2>> edges;  // sorted, first < second
-  std::vector<std::array<Index, 2>> border;  // those of the edges that lie on the border, sorted
-  std::vector<std::uint8_t> on_border;       // whether a cluster has nodes on the border
-  std::vector<std::uint8_t> hold;            // how each is held (Hold); for whoever has features
+  std::vector<float> cover;             // area, in units of a lattice cell as large as the mean
+  std::vector<Index> nodes;             // the member nearest to the position
+  std::vector<std::uint8_t> on_border;  // whether a cluster has nodes on the border
+  std::vector<std::uint8_t> hold;       // how each is held (Hold); for whoever has features
 
   /// Another one in the middle of some, which nothing holds.
   void append_mean(std::span<const Index> some);
+  /// Drops all but some, which are increasing.
+  void keep(std::span<const Index> kept);
 };
 
 /// Positions, normals and nearest nodes of `count` clusters (section 3.8). Member m is node
@@ -31,10 +30,5 @@ Clusters average_clusters(const Graph& graph, const PositionField& position,
                           std::span<const Index> nodes, std::span<const Index> cluster_of,
                           std::span<const std::uint8_t> border, std::span<const std::uint8_t> hold,
                           std::size_t count, const Context& context);
-
-/// The graph way, for point clouds and everything else: no mesh is needed.
-Clusters collapse_clusters(const Graph& graph, const OrientationField& orientation,
-                           const PositionField& position, const ExtractOptions& options,
-                           const Context& context);
 
 }  // namespace meshgrain

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <span>
 
+#include "extract/entry_jumps.h"
 #include "mesh/sort_by_vertex.h"
 #include "mesh/vertex_faces.h"
 #include "util/collect.h"
@@ -24,24 +25,13 @@ std::vector<std::uint8_t> zero_jumps(const Graph& graph, const OrientationField&
                                      std::span<const std::uint8_t> is_free,
                                      const Context& context) {
   std::vector<std::uint8_t> rotations(graph.neighbors.size(), not_zero);
-  context.for_ranges(graph.size(), 2048, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::array<Index, 2>> edges;
-    std::vector<Index> entries;  // of each edge
-    for (auto i = static_cast<Index>(begin); i < end; ++i) {
-      if (!is_free[i]) continue;
-      for (Index e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
-        const Index j = graph.neighbors[e];
-        if (j < i || !is_free[j]) continue;
-        edges.push_back({i, j});
-        entries.push_back(e);
-      }
-    }
-    const std::vector<Jump> jumps = edge_jumps(graph, orientation, position, energy, edges);
-    for (std::size_t k = 0; k < jumps.size(); ++k) {
-      if (!jumps[k].is_zero()) continue;
-      rotations[entries[k]] = static_cast<std::uint8_t>(jumps[k].rotation);
-    }
-  });
+  for_entry_jumps(
+      graph, orientation, position, energy,
+      [&](Index i, Index j) { return is_free[i] && is_free[j]; },
+      [&](Index entry, const Jump& jump) {
+        if (jump.is_zero()) rotations[entry] = static_cast<std::uint8_t>(jump.rotation);
+      },
+      context);
   return rotations;
 }
 

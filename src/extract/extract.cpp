@@ -6,16 +6,17 @@
 #include <utility>
 
 #include "extract/cancel_singularities.h"
-#include "extract/clusters.h"
 #include "extract/collect_faces.h"
 #include "extract/drop_unused.h"
 #include "extract/face_repair.h"
+#include "extract/graph_clusters.h"
 #include "extract/lattice_mesh.h"
 #include "extract/lattice_repair.h"
 #include "extract/mesh_clusters.h"
 #include "extract/pair_odd_faces.h"
 #include "extract/polygon_map.h"
 #include "mesh/vertex_faces.h"
+#include "util/indices.h"
 #include "util/union_find.h"
 
 namespace meshgrain {
@@ -33,15 +34,17 @@ std::vector<std::uint8_t> mark(const std::vector<std::array<Index, 2>>& edges,
 
 /// Drops what broke off: parts of a few faces that are not the largest of their part of the graph.
 /// They come from contradictions between integers, not from the input.
-void drop_fragments(Extraction& extraction, const Graph& graph) {
+void drop_fragments(Extraction& extraction, const Graph& graph, const Context& context) {
   constexpr std::size_t fragment = 8;  // faces
   Mesh& mesh = extraction.mesh;
-  UnionFind output(mesh.positions.size()), input(graph.size());
-  for (Index i = 0; i < graph.size(); ++i) {
+  UnionFind output(mesh.positions.size());
+  SharedUnionFind input(graph.size());
+  const auto unite_neighbors = [&](Index i) {
     for (const Index j : graph.neighbors_of(i)) {
       if (i < j) input.unite(i, j);
     }
-  }
+  };
+  for_indices(graph.size(), unite_neighbors, context);
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     const auto face = std::as_const(mesh.faces)[f];
     for (const Index v : face) output.unite(face[0], v);
@@ -82,20 +85,19 @@ void make_regular(FaceRepair& repair, int posy, const Context& context) {
 Extraction extract_from_graph(const Graph& graph, const OrientationField& orientation,
                               const PositionField& position, const ExtractOptions& options,
                               const Context& context) {
-  Clusters clusters = collapse_clusters(graph, orientation, position, options, context);
-  PolygonMap map(clusters.positions, clusters.normals, clusters.edges);
+  auto [clusters, edges, border] = collapse_graph(graph, orientation, position, options, context);
+  PolygonMap map(clusters.positions, clusters.normals, edges);
   clusters.hold.assign(clusters.positions.size(), free_vertex);
   FaceRepair repair(map, clusters, position.posy, std::vector<std::uint8_t>(map.halfedges(), 0),
                     std::vector<Index>(map.halfedges() / 2, no_index));
   repair.remove_dangling();
   repair.cut_pinches();
-  repair.find_holes(mark(clusters.edges, clusters.border), clusters.on_border,
-                    options.largest_filled_gap);
+  repair.find_holes(mark(edges, border), clusters.on_border, options.largest_filled_gap);
   repair.split_large();
   make_regular(repair, position.posy, context);
   std::vector<Index> vertex;
   Extraction result = collect_faces(map, repair, clusters, vertex, context);
-  drop_fragments(result, graph);
+  drop_fragments(result, graph, context);
   return result;
 }
 

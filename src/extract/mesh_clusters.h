@@ -9,7 +9,7 @@ namespace meshgrain {
 /// What a triangle mesh shrinks to when all of its edges with zero jump are collapsed.
 struct CollapsedMesh {
   JumpMap lattice;
-  Clusters clusters;         // of the vertices (edges and border left empty)
+  Clusters clusters;         // of the vertices
   std::vector<Index> roots;  // the node whose frame is that of the vertex
   /// Pairs of clusters that share a vertex of the surface, at which it was cut, with how many.
   struct Meeting {

@@ -2,16 +2,19 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "graph/nearest_neighbors.h"
+#include "mesh/sort_by_vertex.h"
 #include "mesh/vertex_faces.h"
 #include "mesh/vertex_measures.h"
 #include "mesh/vertex_normals.h"
 #include "mesh/vertex_ring.h"
 #include "meshgrain/error.h"
 #include "meshgrain/normals.h"
+#include "util/collect.h"
 
 namespace meshgrain {
 namespace {
@@ -34,11 +37,12 @@ void gather_neighbors(Graph& graph, const NeighborsOf& neighbors_of, const Conte
     }
   });
   for (std::size_t i = 0; i < n; ++i) graph.offsets[i + 1] += graph.offsets[i];
-  graph.neighbors.reserve(graph.offsets[n]);
-  for (auto& range : gathered) {
-    graph.neighbors.insert(graph.neighbors.end(), range.begin(), range.end());
+  graph.neighbors.resize(graph.offsets[n]);
+  context.for_ranges(n, grain, [&](std::size_t begin, std::size_t) {
+    auto& range = gathered[begin / grain];
+    std::ranges::copy(range, graph.neighbors.begin() + graph.offsets[begin]);
     range = {};
-  }
+  });
 }
 
 void sort_unique_from(std::vector<Index>& values, std::size_t start) {
@@ -156,29 +160,28 @@ Graph cloud_graph(const Mesh& cloud, const GraphOptions& options, const Context&
   const Neighborhoods nearest = nearest_neighbors(cloud.positions, options.neighbors, context);
 
   // Being among the nearest is not mutual, but the fields need every edge from both ends.
-  std::vector<Index> offsets(n + 1, 0);
-  for (const Index j : nearest.indices) {
-    if (j != no_index) ++offsets[j + 1];
-  }
-  for (std::size_t i = 0; i < n; ++i) offsets[i + 1] += offsets[i];
-  std::vector<Index> reverse(offsets[n]);
-  {
-    std::vector<Index> next(offsets.begin(), offsets.end() - 1);
-    for (std::size_t e = 0; e < nearest.indices.size(); ++e) {
-      const Index j = nearest.indices[e];
-      if (j != no_index) reverse[next[j]++] = static_cast<Index>(e / nearest.k);
+  struct Edge {
+    Index from, to;
+  };
+  const auto find_one_sided = [&](std::size_t begin, std::size_t end, std::vector<Edge>& out) {
+    for (auto i = static_cast<Index>(begin); i < end; ++i) {
+      for (const Index j : nearest[i]) {
+        if (std::ranges::find(nearest[j], i) == nearest[j].end()) out.push_back({j, i});
+      }
     }
-  }
+  };
+  const std::vector<Edge> one_sided = collect<Edge>(n, find_one_sided, context);
+  UninitializedVector<Index> others(one_sided.size());
+  const std::vector<Index> offsets = sort_by_vertex(
+      one_sided.size(), n, [&](std::size_t e) { return std::array{one_sided[e].from}; },
+      [&](std::size_t e, Index place) { others[place] = one_sided[e].to; }, context);
   gather_neighbors(
       graph,
       [&](Index i, std::vector<Index>& out) {
-        const std::size_t start = out.size();
-        for (std::size_t k = 0; k < nearest.k; ++k) {
-          const Index j = nearest.indices[i * nearest.k + k];
-          if (j != no_index) out.push_back(j);
-        }
-        out.insert(out.end(), reverse.begin() + offsets[i], reverse.begin() + offsets[i + 1]);
-        sort_unique_from(out, start);
+        const auto start = static_cast<std::ptrdiff_t>(out.size());
+        out.insert(out.end(), nearest[i].begin(), nearest[i].end());
+        out.insert(out.end(), others.begin() + offsets[i], others.begin() + offsets[i + 1]);
+        std::sort(out.begin() + start, out.end());
       },
       context);
 

@@ -81,7 +81,7 @@ Neighborhoods nearest_neighbors(std::span<const Vec3> points, std::size_t k,
   // A tree of the distinct positions: a heap of equal points would make every query among them
   // visit all of them.
   std::vector<Index> place;
-  const std::vector<Index> distinct = distinct_positions(points, &place);
+  const std::vector<Index> distinct = distinct_positions(points, &place, context);
   std::vector<Vec3> copies;
   Points source{points};
   if (distinct.size() < points.size()) {

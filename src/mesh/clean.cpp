@@ -196,7 +196,7 @@ CleanReport clean(Mesh& mesh, const Context& context) {
   CleanReport report;
   if (mesh.is_point_cloud()) {
     report.loose_marks = drop_loose_marks(mesh);
-    const std::vector<Index> kept = distinct_positions(mesh.positions);
+    const std::vector<Index> kept = distinct_positions(mesh.positions, nullptr, context);
     report.duplicate_points = mesh.positions.size() - kept.size();
     if (report.duplicate_points > 0) keep_vertices(mesh, kept);
     return report;

@@ -21,7 +21,7 @@ constexpr double node_of_vertex = 330, node_of_face = 260;  // with its part of 
 constexpr double coarse_levels = 60;  // of the former: they go where no count was asked for
 // More, in cells of so many vertices, many of which collapse one by one.
 constexpr double node_of_large_cell = 130, large_cell = 500;
-constexpr double point = 130, neighbor = 32;  // of a cloud, each of its neighbours
+constexpr double point = 170, neighbor = 17;  // of a cloud, each of its neighbours
 constexpr double input_vertex = 12, input_corner = 4;
 constexpr double dense_vertex = 90;  // more, until coarsen() has passed
 constexpr double written_corner = 65;

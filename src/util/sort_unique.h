@@ -1,7 +1,11 @@
 #pragma once
 
+#include <tbb/parallel_sort.h>
+
 #include <algorithm>
 #include <vector>
+
+#include "meshgrain/context.h"
 
 namespace meshgrain {
 
@@ -9,6 +13,13 @@ namespace meshgrain {
 template <typename T>
 void sort_unique(std::vector<T>& list) {
   std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+/// The same on all threads, for long lists.
+template <typename T>
+void sort_unique(std::vector<T>& list, const Context& context) {
+  context.run([&] { tbb::parallel_sort(list); });
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
