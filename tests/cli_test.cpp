@@ -223,12 +223,26 @@ TEST_F(Cli, SolverOptionsChangeTheResult) {
   EXPECT_EQ(bytes("-f 500 --solver blocks --energy extrinsic --graph vertices --weights "
                   "uniform --sizing uniform --orientation-energy extrinsic -S 32 -k 10"),
             plain);
-  for (const char* options :
-       {"--solver random", "--solver jacobi", "--sweeps 2", "--sweeps 6", "--single-level", "-i",
-        "--intrinsic", "--energy intrinsic", "--orientation-energy intrinsic",
-        "--orientation-energy convex", "--graph faces", "--weights geometric", "-S 0", "--smooth 3",
-        "-c off", "--crease 100", "--crease-normals 30", "--curvature 0.5",
-        "--curvature-hard 10"}) {
+  for (const char* options : {"--solver random",
+                              "--solver jacobi",
+                              "--sweeps 2",
+                              "--sweeps 6",
+                              "--single-level",
+                              "-i",
+                              "--intrinsic",
+                              "--energy intrinsic",
+                              "--orientation-energy intrinsic",
+                              "--orientation-energy convex",
+                              "--graph faces",
+                              "--weights geometric",
+                              "-S 0",
+                              "--smooth 3",
+                              "-c off",
+                              "--crease 100",
+                              "--crease-normals 30",
+                              "--curvature 0.5",
+                              "--curvature-hard 10",
+                              "--bends 0"}) {
     EXPECT_NE(bytes(std::string("-f 500 ") + options), plain) << options;
   }
   EXPECT_EQ(bytes("-f 500 -i"), bytes("-f 500 --energy intrinsic"));
@@ -585,6 +599,7 @@ TEST_F(Cli, WrongUsageIsRefused) {
   refused("-t 0", "--threads");
   refused("-S -1", "--smooth");
   refused("--curvature 2", "--curvature");
+  refused("--bends 2", "--bends");
   refused("--nonsense", "--nonsense");
   refused("second.obj", "second.obj");
   refused("--report out.obj", "same name");

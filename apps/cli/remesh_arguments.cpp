@@ -254,6 +254,12 @@ void add_options(CLI::App& app, Arguments& a) {
           ->check(refuse_unless_finite)
           ->check(CLI::Range(0.0, 180.0))
           ->type_name("DEGREES"));
+  follow(app.add_option("--bends", o.curvature.bends,
+                        "pull along bends that are sharp over an edge's length, such as the rims "
+                        "of thin parts: 0 (off) to 1 (0.5)")
+             ->check(refuse_unless_finite)
+             ->check(CLI::Range(0.0, 1.0))
+             ->type_name("STRENGTH"));
 
   const auto method = [&](CLI::Option* option) { option->group("Method"); };
   method(app.add_flag_callback(

@@ -119,6 +119,7 @@ Json to_json(const RemeshOptions& o) {
                {"symmetry", symmetry(o.symmetry)},
                {"curvature", o.curvature.strength},
                {"curvature_hard", o.curvature.hard_degrees},
+               {"bends", o.curvature.bends},
                {"smooth", o.smoothing},
                {"regularity", o.regularity},
                {"min_component", o.min_component},

@@ -22,6 +22,9 @@ struct CurvatureAlignment {
   /// Hold the field fast where the surface bends by at least this much more one way than the other
   /// over one edge length, in degrees: the hard constraint of Bommes et al. 2009. 0: none.
   float hard_degrees = 0;
+  /// Pull along bends that are sharp over one edge length, such as the rims of thin parts, 0 (none)
+  /// to 1; what bends less is left to the energy. Of meshes.
+  float bends = 0.5f;
 };
 
 std::vector<OrientationConstraint> curvature_constraints(const Graph& graph, float edge_length,

@@ -11,6 +11,7 @@
 #include "extract/remove_strips.h"
 #include "extract/single_faces.h"
 #include "features/lines_abreast.h"
+#include "field/bend_alignment.h"
 #include "field/transfer.h"
 #include "finish/face_shape.h"
 #include "finish/smooth.h"
@@ -251,8 +252,14 @@ void Pipeline::orient() {
     static_cast<SolverOptions&>(orientation) = options_.solver;
     orientation.rosy = options_.rosy != 0 ? options_.rosy : posy_of(options_.faces);
     orientation.energy = options_.orientation_energy;
-    auto constraints = curvature_constraints(graph(), static_cast<float>(mean_length()),
-                                             options_.curvature, context_);
+    const auto edge_length = static_cast<float>(mean_length());
+    // An axis has no sign, which a field of arrows needs.
+    const float bends = orientation.rosy == 1 ? 0 : options_.curvature.bends;
+    auto constraints =
+        bend_constraints(hierarchy_, surface_, features_, edge_length, bends, context_);
+    const auto curvature =
+        curvature_constraints(graph(), edge_length, options_.curvature, context_);
+    constraints.insert(constraints.end(), curvature.begin(), curvature.end());
     constraints.insert(constraints.end(), constraints_.orientation.begin(),
                        constraints_.orientation.end());
     const auto solver = OrientationSolver::create(hierarchy_, orientation, constraints);
