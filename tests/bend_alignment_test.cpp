@@ -28,7 +28,8 @@ std::vector<OrientationConstraint> constraints_on(const Mesh& mesh, float edge_l
                                                   const FeatureLines& creases = {},
                                                   int threads = 2) {
   const Hierarchy hierarchy = build_hierarchy(build_graph(mesh));
-  return bend_constraints(hierarchy, mesh, creases, edge_length, strength, Context(threads));
+  return bend_constraints(hierarchy, mesh, vertex_faces(mesh), creases, edge_length, strength,
+                          Context(threads));
 }
 
 bool is_at_rim(const Vec3& p) {
@@ -60,7 +61,8 @@ TEST(BendAlignment, TurnsTheFieldAlongTheRims) {
   const Mesh ring = flat_ring();
   const Hierarchy hierarchy = build_hierarchy(build_graph(ring));
   const auto mean_degrees = [&](float strength) {
-    const auto constraints = bend_constraints(hierarchy, ring, {}, 0.12f, strength, Context());
+    const auto constraints =
+        bend_constraints(hierarchy, ring, vertex_faces(ring), {}, 0.12f, strength, Context());
     double sum = 0;
     std::size_t count = 0;
     for (const std::uint64_t seed : {1, 2, 3, 4}) {
@@ -92,7 +94,8 @@ TEST(BendAlignment, LeavesGraphsOfFacesAlone) {
   GraphOptions faces;
   faces.nodes = GraphNodes::faces;
   const Hierarchy hierarchy = build_hierarchy(build_graph(ring, faces));
-  EXPECT_TRUE(bend_constraints(hierarchy, ring, {}, 0.12f, 1, Context()).empty());
+  EXPECT_TRUE(
+      bend_constraints(hierarchy, ring, vertex_faces(ring), {}, 0.12f, 1, Context()).empty());
 }
 
 TEST(BendAlignment, LeavesCreasesToTheirConstraints) {

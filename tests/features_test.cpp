@@ -141,7 +141,7 @@ double followed_along_ridge(const Degrees& degrees) {
       roof.faces.push_back(std::array<Index, 3>{a, a + 4, a + 1});
     }
   }
-  const std::vector<SharpEdge> edges = sharp_edges(roof, flat_degrees);
+  const auto edges = sharp_edges(roof, flat_degrees);
   std::vector<std::uint8_t> is_crease;
   for (const SharpEdge& edge : edges) {
     is_crease.push_back(edge.cosine < std::cos(50 * std::numbers::pi / 180));

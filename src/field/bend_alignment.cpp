@@ -51,8 +51,8 @@ Pull pull_of(const BendPatch& patch, const Vec3& normal, float edge_length) {
 /// The patch of each node of a level together with those of its neighbours. Where the surface may
 /// not bend they are flat. None at all if it may bend nowhere.
 std::vector<BendPatch> ring_patches(const Hierarchy& hierarchy, std::size_t level,
-                                    const Mesh& surface, const FeatureLines& creases,
-                                    const Context& context) {
+                                    const Mesh& surface, const VertexFaces& around,
+                                    const FeatureLines& creases, const Context& context) {
   const Graph& graph = hierarchy.levels[level];
   const std::size_t count = graph.size();
   std::vector<std::uint8_t> bends(count);
@@ -62,7 +62,7 @@ std::vector<BendPatch> ring_patches(const Hierarchy& hierarchy, std::size_t leve
   });
   if (std::ranges::find(bends, 1) == bends.end()) return {};
 
-  const BendPatches patches(hierarchy, surface, creases, context);
+  const BendPatches patches(hierarchy, surface, around, creases, context);
   std::vector<BendPatch> own(count), sums(count);
   context.for_ranges(count, grain, [&](std::size_t begin, std::size_t end) {
     context.check();
@@ -117,11 +117,13 @@ void pull_vertices(const Hierarchy& hierarchy, std::size_t level, Index node, co
 }  // namespace
 
 std::vector<OrientationConstraint> bend_constraints(const Hierarchy& hierarchy, const Mesh& surface,
+                                                    const VertexFaces& around,
                                                     const FeatureLines& creases, float edge_length,
                                                     float strength, const Context& context) {
   if (!(strength > 0) || !are_vertices(hierarchy, surface)) return {};
   std::size_t level = level_of_area(hierarchy, edge_length * edge_length);
-  std::vector<BendPatch> patches = ring_patches(hierarchy, level, surface, creases, context);
+  std::vector<BendPatch> patches =
+      ring_patches(hierarchy, level, surface, around, creases, context);
   if (patches.empty()) return {};
   if (level > 0) {
     --level;

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "mesh/vertex_faces.h"
 #include "meshgrain/context.h"
 #include "meshgrain/features.h"
 #include "meshgrain/fields.h"
@@ -17,8 +18,9 @@ namespace meshgrain {
 ///
 /// The constraints are soft, up to `strength` (0 to 1; 0: none). None is where the surface bends
 /// gently or alike in all directions, or on lines of `creases`; nor where the nodes of the
-/// hierarchy are not the vertices of the surface.
+/// hierarchy are not the vertices of the surface, the faces `around` which are known.
 std::vector<OrientationConstraint> bend_constraints(const Hierarchy& hierarchy, const Mesh& surface,
+                                                    const VertexFaces& around,
                                                     const FeatureLines& creases, float edge_length,
                                                     float strength, const Context& context);
 

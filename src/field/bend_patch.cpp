@@ -49,16 +49,16 @@ float BendPatch::norm() const {
   return area > 0 ? std::sqrt(sum) / area : 0.0f;
 }
 
-BendPatches::BendPatches(const Hierarchy& hierarchy, const Mesh& surface,
+BendPatches::BendPatches(const Hierarchy& hierarchy, const Mesh& surface, const VertexFaces& around,
                          const FeatureLines& creases, const Context& context)
-    : hierarchy_(hierarchy), surface_(surface), creases_(creases, surface.positions.size()) {
+    : hierarchy_(hierarchy),
+      surface_(surface),
+      around_(around),
+      creases_(creases, surface.positions.size()) {
+  if (are_vertices(hierarchy, surface)) return;
   const Graph& finest = hierarchy.levels[0];
-  if (are_vertices(hierarchy, surface)) {
-    around_ = vertex_faces(surface, context);
-  } else {
-    curvature_ = estimate_curvature(finest.offsets, finest.neighbors, finest.positions,
-                                    finest.normals, context);
-  }
+  curvature_ = estimate_curvature(finest.offsets, finest.neighbors, finest.positions,
+                                  finest.normals, context);
 }
 
 BendPatch BendPatches::of(std::size_t level, Index node) const {

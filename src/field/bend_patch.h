@@ -38,8 +38,9 @@ struct BendPatch {
 /// The arguments must outlive it.
 class BendPatches {
  public:
-  BendPatches(const Hierarchy& hierarchy, const Mesh& surface, const FeatureLines& creases,
-              const Context& context);
+  /// `around`: the faces around the vertices of `surface`, where these are the nodes.
+  BendPatches(const Hierarchy& hierarchy, const Mesh& surface, const VertexFaces& around,
+              const FeatureLines& creases, const Context& context);
 
   /// That of a node of any level. Takes time in proportion to the vertices that it stands for.
   BendPatch of(std::size_t level, Index node) const;
@@ -49,7 +50,7 @@ class BendPatches {
 
   const Hierarchy& hierarchy_;
   const Mesh& surface_;
-  VertexFaces around_;
+  const VertexFaces& around_;
   FeatureEdges creases_;
   std::optional<Curvature> curvature_;  // of the nodes, where these are not vertices
 };

@@ -24,7 +24,9 @@ void even_out(const Graph& graph, std::vector<float>& values, const Context& con
 
 std::vector<float> bending(const Hierarchy& hierarchy, const Mesh& surface,
                            const FeatureLines& creases, double area, const Context& context) {
-  const BendPatches patches(hierarchy, surface, creases, context);
+  const VertexFaces around =
+      are_vertices(hierarchy, surface) ? vertex_faces(surface, context) : VertexFaces();
+  const BendPatches patches(hierarchy, surface, around, creases, context);
   std::size_t level = level_of_area(hierarchy, area);
   const Graph& graph = hierarchy.levels[level];
   std::vector<BendPatch> own(graph.size());

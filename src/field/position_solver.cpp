@@ -1,5 +1,3 @@
-#include <Eigen/Geometry>
-
 #include "field/constraints.h"
 #include "field/kernel_solver.h"
 #include "field/position_kernel.h"
@@ -7,6 +5,7 @@
 #include "field/with_symmetry.h"
 #include "meshgrain/error.h"
 #include "meshgrain/fields.h"
+#include "util/bounding_box.h"
 
 namespace meshgrain {
 namespace {
@@ -50,8 +49,10 @@ class Solver final : public KernelSolver<PositionSolver, PositionKernel<S, E>> {
 
  public:
   Solver(const Hierarchy& hierarchy, std::vector<LatticeFrame> frames,
-         const PositionOptions& options, std::span<const PositionConstraint> constraints)
+         const PositionOptions& options, std::span<const PositionConstraint> constraints,
+         float extent)
       : hierarchy_(hierarchy),
+        extent_(extent),
         frames_(std::move(frames)),
         constraints_(spread_constraints(hierarchy, constraints)) {
     this->begin(hierarchy, options, make_kernels());
@@ -67,17 +68,15 @@ class Solver final : public KernelSolver<PositionSolver, PositionKernel<S, E>> {
 
  private:
   std::vector<Kernel> make_kernels() const {
-    Eigen::AlignedBox3f box;
-    for (const Vec3& p : hierarchy_.levels[0].positions) box.extend(p);
-    const float extent = hierarchy_.levels[0].size() == 0 ? 1 : box.diagonal().norm();
     std::vector<Kernel> kernels;
     for (std::size_t l = 0; l < hierarchy_.levels.size(); ++l) {
-      kernels.emplace_back(hierarchy_.levels[l], frames_[l], constraints_[l], extent);
+      kernels.emplace_back(hierarchy_.levels[l], frames_[l], constraints_[l], extent_);
     }
     return kernels;
   }
 
   const Hierarchy& hierarchy_;
+  const float extent_;  // of all positions
   std::vector<LatticeFrame> frames_;
   std::vector<LineConstraints> constraints_;
 };
@@ -99,13 +98,16 @@ std::unique_ptr<PositionSolver> PositionSolver::create(
     }
   }
   auto frames = restrict_frames(hierarchy, orientation, edge_length, context);
+  const float extent = hierarchy.levels[0].size() == 0
+                           ? 1
+                           : bounding_box(hierarchy.levels[0].positions, context).diagonal().norm();
   return with_posy(options.posy, [&]<int S>() -> std::unique_ptr<PositionSolver> {
     if (options.energy == PositionEnergy::intrinsic) {
       return std::make_unique<Solver<S, PositionEnergy::intrinsic>>(hierarchy, std::move(frames),
-                                                                    options, constraints);
+                                                                    options, constraints, extent);
     }
     return std::make_unique<Solver<S, PositionEnergy::extrinsic>>(hierarchy, std::move(frames),
-                                                                  options, constraints);
+                                                                  options, constraints, extent);
   });
 }
 

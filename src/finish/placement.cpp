@@ -5,10 +5,10 @@
 namespace meshgrain {
 
 Placement::Placement(Extraction& extraction, const Mesh& surface, const VertexFaces& around_surface,
-                     const Graph& graph, const FeatureLines& lines)
+                     const Graph& graph, const FeatureLines& lines, const Context& context)
     : extraction_(extraction),
       projector_(surface, around_surface, graph),
-      rails_(extraction, lines),
+      rails_(extraction, lines, context),
       chords_(extraction.mesh, extraction.line_edges, rails_),
       tether_(extraction.mesh.positions.size(), no_index) {
   for (const Index v : extraction.corners) {

@@ -17,7 +17,7 @@ class Placement {
  public:
   /// All must outlive this.
   Placement(Extraction& extraction, const Mesh& surface, const VertexFaces& around_surface,
-            const Graph& graph, const FeatureLines& lines);
+            const Graph& graph, const FeatureLines& lines, const Context& context = Context(1));
 
   /// The place nearest to `p` that vertex v may have. Remembers in Extraction::nodes where that is,
   /// so that calls for the same vertex must not run at once.

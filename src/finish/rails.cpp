@@ -8,7 +8,7 @@
 
 namespace meshgrain {
 
-Rails::Rails(const Extraction& extraction, const FeatureLines& lines)
+Rails::Rails(const Extraction& extraction, const FeatureLines& lines, const Context& context)
     : lines_(lines),
       segment_(extraction.mesh.positions.size(), no_index),
       line_(extraction.mesh.positions.size(), no_index) {
@@ -28,7 +28,7 @@ Rails::Rails(const Extraction& extraction, const FeatureLines& lines)
   }
   for (const Index v : extraction.corners) segment_[v] = stays;
   // The border of a mesh that was not made along lines.
-  for (const auto& [a, b] : rim_edges(extraction.mesh)) {
+  for (const auto& [a, b] : rim_edges(extraction.mesh, context)) {
     for (const Index v : {a, b}) {
       if (!is_free(v)) continue;
       const Index at = entry(v);

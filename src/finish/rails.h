@@ -13,7 +13,8 @@ class Rails {
   /// Vertices of edges that follow a line slide along it; those at corners stay there. A vertex of
   /// the mesh's border that follows none slides along the line of its node if there is one, else
   /// it stays where it is.
-  Rails(const Extraction& extraction, const FeatureLines& lines);
+  Rails(const Extraction& extraction, const FeatureLines& lines,
+        const Context& context = Context(1));
 
   bool is_fixed(std::size_t v) const { return segment_[v] == stays; }
   bool is_free(std::size_t v) const { return segment_[v] == no_index; }

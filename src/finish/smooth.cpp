@@ -161,7 +161,7 @@ Smoother::Smoother(Extraction& extraction, const Mesh& surface, const VertexFace
       nodes_are_vertices_(graph.size() == surface.positions.size()),
       options_(options),
       context_(context),
-      placement_(extraction, surface, around_surface, graph, features),
+      placement_(extraction, surface, around_surface, graph, features, context),
       around_(vertex_faces(mesh_, context)),
       corners_(around_.faces.size()),
       batches_(batches_of(mesh_.faces,

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "graph/nearest_neighbors.h"
+#include "graph/vertex_graph.h"
 #include "mesh/sort_by_vertex.h"
 #include "mesh/vertex_faces.h"
 #include "mesh/vertex_measures.h"
@@ -84,36 +85,6 @@ void require_triangles(const Mesh& mesh) {
   if (mesh.faces.uniform_degree() != 3) {
     throw Error("a graph is built from triangles: triangulate the mesh first");
   }
-}
-
-Graph vertex_graph(const Mesh& mesh, const GraphOptions& options, const Context& context) {
-  Graph graph;
-  graph.positions = mesh.positions;
-  const VertexFaces around = vertex_faces(mesh, context);
-  VertexMeasures measures = measure_vertices(mesh, around, context);
-  graph.areas = std::move(measures.areas);
-  graph.normals = options.crease_degrees < 0
-                      ? std::move(measures.normals)
-                      : vertex_normals(mesh, around, options.crease_degrees, context);
-  gather_neighbors(
-      graph,
-      [&](Index v, std::vector<Index>& out) {
-        VertexRing ring;
-        if (ring.find(mesh, around[v], v)) {
-          out.insert(out.end(), ring.neighbors().begin(), ring.neighbors().end());
-          return;
-        }
-        const std::size_t start = out.size();
-        for (const Index f : around[v]) {
-          for (const Index w : mesh.faces[f]) {
-            if (w != v) out.push_back(w);
-          }
-        }
-        sort_unique_from(out, start);
-      },
-      context);
-  if (options.weights == GraphWeights::geometric) weigh_edges(graph, mesh, around, context);
-  return graph;
 }
 
 Graph face_graph(const Mesh& mesh, const Context& context) {
@@ -221,11 +192,43 @@ Graph cloud_graph(const Mesh& cloud, const GraphOptions& options, const Context&
 
 }  // namespace
 
+Graph vertex_graph(const Mesh& mesh, const VertexFaces& around, const GraphOptions& options,
+                   const Context& context) {
+  require_triangles(mesh);
+  Graph graph;
+  graph.positions = mesh.positions;
+  VertexMeasures measures = measure_vertices(mesh, around, context);
+  graph.areas = std::move(measures.areas);
+  graph.normals = options.crease_degrees < 0
+                      ? std::move(measures.normals)
+                      : vertex_normals(mesh, around, options.crease_degrees, context);
+  gather_neighbors(
+      graph,
+      [&](Index v, std::vector<Index>& out) {
+        VertexRing ring;
+        if (ring.find(mesh, around[v], v)) {
+          out.insert(out.end(), ring.neighbors().begin(), ring.neighbors().end());
+          return;
+        }
+        const std::size_t start = out.size();
+        for (const Index f : around[v]) {
+          for (const Index w : mesh.faces[f]) {
+            if (w != v) out.push_back(w);
+          }
+        }
+        sort_unique_from(out, start);
+      },
+      context);
+  if (options.weights == GraphWeights::geometric) weigh_edges(graph, mesh, around, context);
+  return graph;
+}
+
 Graph build_graph(const Mesh& mesh, const GraphOptions& options, const Context& context) {
   if (mesh.is_point_cloud()) return cloud_graph(mesh, options, context);
   require_triangles(mesh);
-  return options.nodes == GraphNodes::faces ? face_graph(mesh, context)
-                                            : vertex_graph(mesh, options, context);
+  return options.nodes == GraphNodes::faces
+             ? face_graph(mesh, context)
+             : vertex_graph(mesh, vertex_faces(mesh, context), options, context);
 }
 
 }  // namespace meshgrain

@@ -76,18 +76,22 @@ class EdgesOfVertex {
   std::vector<Use> uses_;
 };
 
-/// Calls `take(a, b, faces, out)` for every edge a < b.
-template <typename Selected, typename Take>
-std::vector<Selected> select_edges(const Mesh& mesh, const Take& take, const Context& context) {
-  const VertexFaces around = vertex_faces(mesh, context);
-  const auto look = [&](std::size_t begin, std::size_t end, std::vector<Selected>& out) {
+/// For collect(): calls `take(a, b, faces, out)` for every edge a < b.
+template <typename Take>
+auto each_edge(const Mesh& mesh, const VertexFaces& around, const Take& take) {
+  return [&](std::size_t begin, std::size_t end, auto& out) {
     EdgesOfVertex edges;
     for (auto v = static_cast<Index>(begin); v < end; ++v) {
       edges.visit(mesh, around[v], v,
                   [&](Index a, Index b, const EdgeFaces& faces) { take(a, b, faces, out); });
     }
   };
-  return collect<Selected>(mesh.positions.size(), look, context);
+}
+
+template <typename Selected, typename Take>
+std::vector<Selected> select_edges(const Mesh& mesh, const Take& take, const Context& context) {
+  const VertexFaces around = vertex_faces(mesh, context);
+  return collect<Selected>(mesh.positions.size(), each_edge(mesh, around, take), context);
 }
 
 using Edge = std::array<Index, 2>;
@@ -153,34 +157,32 @@ RimAndSharpEdges rim_and_sharp_edges(const Mesh& mesh, double degrees, const Con
     }
   });
   struct Found {
-    Edge ends;
-    double cosine;
+    Edges rim;
+    std::vector<SharpEdge> sharp;
   };
-  constexpr double on_rim = 2;  // in place of a cosine
   const double flattest = std::cos(degrees * std::numbers::pi / 180);
-  const auto found = select_edges<Found>(
-      mesh,
-      [&](Index a, Index b, const EdgeFaces& faces, std::vector<Found>& out) {
-        if (faces.forth != 1 || faces.back != 1) return out.push_back({{a, b}, on_rim});
-        const Vec3 &left = normals[faces.left], &right = normals[faces.right];
-        const double cosine = left.dot(right);
-        if (cosine < flattest && !left.isZero(0) && !right.isZero(0)) {
-          out.push_back({{a, b}, cosine});
-        }
-      },
-      context);
-  RimAndSharpEdges result;
-  for (const auto& [ends, cosine] : found) {
-    if (cosine == on_rim) {
-      result.rim.push_back(ends);
-    } else {
-      result.sharp.push_back({ends, cosine});
+  const auto take = [&](Index a, Index b, const EdgeFaces& faces, Found& out) {
+    if (faces.forth != 1 || faces.back != 1) return out.rim.push_back({a, b});
+    const Vec3 &left = normals[faces.left], &right = normals[faces.right];
+    const double cosine = left.dot(right);
+    if (cosine < flattest && !left.isZero(0) && !right.isZero(0)) {
+      out.sharp.push_back({{a, b}, cosine});
     }
+  };
+  const VertexFaces around = vertex_faces(mesh, context);
+  const auto parts =
+      collect_parts<Found>(mesh.positions.size(), each_edge(mesh, around, take), context);
+  RimAndSharpEdges result;
+  for (const Found& found : parts) {
+    result.rim.insert(result.rim.end(), found.rim.begin(), found.rim.end());
   }
+  result.sharp = joined<SharpEdge>(
+      parts, [](const Found& found) { return std::span(found.sharp); }, context);
   return result;
 }
 
-std::vector<SharpEdge> sharp_edges(const Mesh& mesh, double degrees, const Context& context) {
+UninitializedVector<SharpEdge> sharp_edges(const Mesh& mesh, double degrees,
+                                           const Context& context) {
   return rim_and_sharp_edges(mesh, degrees, context).sharp;
 }
 

@@ -6,6 +6,7 @@
 
 #include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
+#include "meshgrain/uninitialized.h"
 
 namespace meshgrain {
 
@@ -47,13 +48,13 @@ struct SharpEdge {
 /// rim_edges() and sharp_edges(), found together.
 struct RimAndSharpEdges {
   std::vector<std::array<Index, 2>> rim;
-  std::vector<SharpEdge> sharp;
+  UninitializedVector<SharpEdge> sharp;  // scans have as many as other edges
 };
 RimAndSharpEdges rim_and_sharp_edges(const Mesh& mesh, double degrees, const Context& context);
 
 /// The edges between two faces whose normals differ by more than `degrees`.
-std::vector<SharpEdge> sharp_edges(const Mesh& mesh, double degrees,
-                                   const Context& context = Context(1));
+UninitializedVector<SharpEdge> sharp_edges(const Mesh& mesh, double degrees,
+                                           const Context& context = Context(1));
 std::vector<std::array<Index, 2>> crease_edges(const Mesh& mesh, double degrees,
                                                const Context& context = Context(1));
 

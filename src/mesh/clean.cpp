@@ -76,7 +76,7 @@ bool all_differ(std::span<const Keyed> faces) {
 std::vector<Index> find_duplicates(const Faces& faces, std::size_t vertices,
                                    const Context& context) {
   // Those with the same lowest corner come to lie next to each other, without a sort of them all.
-  std::vector<Keyed> keyed(faces.size());
+  UninitializedVector<Keyed> keyed(faces.size());
   const std::vector<Index> offsets = with_corners(faces, [&](const auto& corners) {
     const auto put = [&](std::size_t f, Index place) {
       keyed[place] = {key_of(corners(f)), static_cast<Index>(f)};

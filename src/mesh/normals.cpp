@@ -10,6 +10,7 @@
 
 #include "mesh/vertex_faces.h"
 #include "mesh/vertex_normals.h"
+#include "util/indices.h"
 
 namespace meshgrain {
 namespace {
@@ -134,10 +135,12 @@ class NormalFinder {
 
 /// Gives each vertex without a normal (zero) that of the vertex which a walk along the faces from
 /// all others reaches it from first, or (0, 0, 1).
-void fill_missing(const Mesh& mesh, const VertexFaces& around, std::vector<Vec3>& normals) {
+void fill_missing(const Mesh& mesh, const VertexFaces& around, std::vector<Vec3>& normals,
+                  const Context& context) {
+  const auto is_missing = [&](Index v) { return normals[v].isZero(0); };
+  const std::vector<Index> missing = indices_where(normals.size(), is_missing, context);
   std::vector<Index> front;
-  for (std::size_t v = 0; v < normals.size(); ++v) {
-    if (!normals[v].isZero(0)) continue;
+  for (const Index v : missing) {
     for (const Index f : around[v])
       for (const Index w : mesh.faces[f])
         if (!normals[w].isZero(0)) front.push_back(w);
@@ -149,8 +152,8 @@ void fill_missing(const Mesh& mesh, const VertexFaces& around, std::vector<Vec3>
           normals[w] = normals[front[i]];
           front.push_back(w);
         }
-  for (Vec3& n : normals)
-    if (n.isZero(0)) n = Vec3::UnitZ();
+  for (const Index v : missing)
+    if (normals[v].isZero(0)) normals[v] = Vec3::UnitZ();
 }
 
 }  // namespace
@@ -175,7 +178,7 @@ std::vector<Vec3> vertex_normals(const Mesh& mesh, const VertexFaces& around, do
     NormalFinder finder(mesh, around, crease_degrees, normal_of);
     for (std::size_t v = begin; v < end; ++v) normals[v] = finder.at(static_cast<Index>(v));
   });
-  fill_missing(mesh, around, normals);
+  fill_missing(mesh, around, normals, context);
   return normals;
 }
 
@@ -188,7 +191,7 @@ void complete_normals(const Mesh& mesh, const VertexFaces& around, std::vector<V
       if (normals[v].isZero(0)) normals[v] = finder.at(static_cast<Index>(v));
     }
   });
-  fill_missing(mesh, around, normals);
+  fill_missing(mesh, around, normals, context);
 }
 
 }  // namespace meshgrain

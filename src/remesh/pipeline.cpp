@@ -16,6 +16,7 @@
 #include "finish/face_shape.h"
 #include "finish/smooth.h"
 #include "finish/untwist.h"
+#include "graph/vertex_graph.h"
 #include "mesh/border.h"
 #include "meshgrain/error.h"
 #include "meshgrain/singularities.h"
@@ -67,8 +68,12 @@ Pipeline::Pipeline(const Mesh& input, const RemeshOptions& options, const Contex
 
 void Pipeline::build_graph() {
   hierarchy_ = {};
-  hierarchy_.levels.push_back(
-      stage_("graph", [&] { return meshgrain::build_graph(surface_, options_.graph, context_); }));
+  hierarchy_.levels.push_back(stage_("graph", [&] {
+    around_ = is_cloud_ ? VertexFaces() : vertex_faces(surface_, context_);
+    return !is_cloud_ && nodes_are_vertices_
+               ? vertex_graph(surface_, around_, options_.graph, context_)
+               : meshgrain::build_graph(surface_, options_.graph, context_);
+  }));
   result_.report.nodes = graph().size();
   result_.report.edges = graph().neighbors.size() / 2;
 }
@@ -256,7 +261,7 @@ void Pipeline::orient() {
     // An axis has no sign, which a field of arrows needs.
     const float bends = orientation.rosy == 1 ? 0 : options_.curvature.bends;
     auto constraints =
-        bend_constraints(hierarchy_, surface_, features_, edge_length, bends, context_);
+        bend_constraints(hierarchy_, surface_, around_, features_, edge_length, bends, context_);
     const auto curvature =
         curvature_constraints(graph(), edge_length, options_.curvature, context_);
     constraints.insert(constraints.end(), curvature.begin(), curvature.end());
@@ -416,14 +421,13 @@ void Pipeline::smooth_faces() {
     smoothing.fit = options_.sizing.adaptive;
     smoothing.corners_stay = !borders_.empty();
     if (!is_cloud_ && nodes_are_vertices_) smoothing.features = &features_;
-    const VertexFaces around = is_cloud_ ? VertexFaces{} : vertex_faces(surface_, context_);
-    smooth(extraction_, surface_, around, graph(), smoothing, context_);
+    smooth(extraction_, surface_, around_, graph(), smoothing, context_);
     // What is bad beside vertices that cannot move shows only now.
     if (!borders_.empty() && improve_border_faces(extraction_, options_.faces, context_)) {
-      smooth(extraction_, surface_, around, graph(), smoothing, context_);
+      smooth(extraction_, surface_, around_, graph(), smoothing, context_);
     }
     if (options_.smoothing > 0 && posy_of(options_.faces) == 4) {
-      close_bad_quads(extraction_, surface_, around, graph(), std::move(smoothing),
+      close_bad_quads(extraction_, surface_, around_, graph(), std::move(smoothing),
                       target_.spare_faces(extraction_.mesh), context_);
     }
   });

@@ -8,6 +8,7 @@
 #include "features/guide_constraints.h"
 #include "mesh/frame.h"
 #include "mesh/surface_size.h"
+#include "mesh/vertex_faces.h"
 #include "meshgrain/extract.h"
 #include "meshgrain/hierarchy.h"
 #include "meshgrain/remesh.h"
@@ -152,6 +153,7 @@ class Pipeline {
   bool is_coarsened_ = false;  // its creases are marked since then, and
   bool had_marks_ = false;     // others were before
   Mesh surface_;
+  VertexFaces around_;        // its vertices, once it has a graph
   SurfaceSize input_size_{};  // of the surface before it is refined
   Hierarchy hierarchy_;
   double area_ = 0;
