@@ -25,7 +25,6 @@ constexpr double point = 170, neighbor = 17;  // of a cloud, each of its neighbo
 constexpr double input_vertex = 12, input_corner = 4;
 constexpr double dense_vertex = 90;  // more, until coarsen() has passed
 constexpr double written_corner = 65;
-constexpr double far_waves = 50;    // more, where singularities are cancelled however far apart
 constexpr double given_node = 250;  // of RemeshOptions::fields
 
 /// Into how many triangles subdivide() splits one with edges of these lengths: each edge is halved
@@ -74,11 +73,10 @@ double added_triangles(const Mesh& input, double triangles, const SurfaceSize& s
 }
 
 double bytes_of_written_face(const RemeshOptions& options) {
-  const double corner = written_corner + (options.regularity < 1 ? 0 : far_waves);
-  if (options.faces == OutputFaces::triangles) return 3 * corner;
+  if (options.faces == OutputFaces::triangles) return 3 * written_corner;
   // The dual of two triangles, which are there first.
-  if (options.faces == OutputFaces::hexagons) return 12 * corner;
-  return 4 * corner;
+  if (options.faces == OutputFaces::hexagons) return 12 * written_corner;
+  return 4 * written_corner;
 }
 
 /// Bytes at any target, and those that this one takes besides.

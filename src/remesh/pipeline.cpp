@@ -539,12 +539,13 @@ PositionField Pipeline::solve_positions() {
 }
 
 double Pipeline::cancelling_cost(double regularity) const {
-  if (regularity >= 1) return std::numeric_limits<double>::infinity();
   const double middle = lattice_faces_ == OutputFaces::quads           ? 9.3
                         : lattice_faces_ == OutputFaces::quad_dominant ? 15.0
                                                                        : 11.2;
-  constexpr double least = 0.28;  // of that
-  return middle * (least + (1 - least) * regularity / (1 - regularity));
+  // Dearer ways crumple the grid, and mending it takes as many irregular vertices as they save.
+  constexpr double least = 0.28, most = 5.5;  // of that
+  const double growing = least + (1 - least) * regularity / std::max(1 - regularity, 1e-9);
+  return middle * std::min(growing, most);
 }
 
 Extraction Pipeline::extract(const PositionField& positions) {
