@@ -50,7 +50,9 @@ class LatticeRepair {
       bool changed = collapse_zero_edges();
       changed = flip_edges() || changed;
       changed = swing_edges() || changed;
-      changed = changed || unfold_lines() || shift_vertices() || collapse_flawed() || fill_in();
+      // Leads come last: flips may bring their apexes back, and nothing else would have a turn.
+      changed = changed || unfold_lines() || shift_vertices() || collapse_flawed() || fill_in() ||
+                lead_apexes();
       if (!changed) return;
     }
   }
@@ -339,6 +341,127 @@ class LatticeRepair {
     return any;
   }
 
+  /// Leads the apexes of flawed cones to triangles that have room for them, over some edges: alone,
+  /// a swing of one of these, or a flip that makes room, would gain nothing.
+  bool lead_apexes() {
+    constexpr int most_swings = 3;
+    bool any = false;
+    for (Index v = unsound_.first(0); v != no_index; v = unsound_.first(v + 1)) {
+      if (map_.leaving(v) == no_index || lead_refused_.still(v, *this) || is_sound(v)) continue;
+      std::vector<Edge> cones;
+      lattice_.for_each_leaving(v, [&](Index h) {
+        if (lattice_.holes[h]) return;
+        const LatticeTriangle triangle = lattice_.triangle(h);
+        if (triangle.is_cone() && triangle.flaw() > 0) cones.push_back(ends(h));
+      });
+      const auto lead = [&](const Edge& h) { return lead_apex(halfedge(h), most_swings, 0); };
+      if (std::ranges::any_of(cones, lead)) {
+        any = true;
+      } else {
+        lead_refused_.set(v, now_);
+      }
+    }
+    return any;
+  }
+
+  /// An edge that keeps its name when it is flipped and flipped back, which makes it another one.
+  using Edge = std::array<Index, 2>;
+  static constexpr Edge no_edge{no_index, no_index};
+
+  Edge ends(Index h) const { return {map_.origin(h), map_.target(h)}; }
+  Index halfedge(const Edge& ends) const {
+    Index found = no_index;
+    lattice_.for_each_leaving(ends[0], [&](Index h) {
+      if (map_.target(h) == ends[1]) found = h;
+    });
+    return found;
+  }
+
+  /// A swing of the edge `over`, after a flip of the edge `flipped` beside it, if any.
+  struct Lead {
+    Edge over, flipped;
+    double flaws, cost;  // by how much there are more
+  };
+
+  /// The apex of the cone left of h, by up to so many swings, but not over h itself if it came from
+  /// there. `flaws_so_far`: by how much there are more by now. Returns whether there are less in
+  /// the end; else all is as it was.
+  bool lead_apex(Index h, int swings, double flaws_so_far, bool came_over_h = false) {
+    constexpr double least_better = 0.5, most_more = 2;
+    std::vector<Lead> leads;
+    if (!came_over_h) add_leads(h, leads);
+    add_leads(map_.next(h), leads);
+    add_leads(map_.prev(h), leads);
+    std::ranges::sort(leads, {}, &Lead::cost);
+    for (const Lead& lead : leads) {
+      const double flaws = flaws_so_far + lead.flaws;
+      const bool is_better = flaws <= -least_better;
+      if (!is_better && (swings == 1 || flaws > most_more)) continue;
+      const Index over = halfedge(lead.over), t = PolygonMap::twin(over);
+      const bool has_flip = lead.flipped != no_edge;
+      const Index flipped = has_flip ? halfedge(lead.flipped) : over;
+      if (has_flip && !lattice_.may_flip(flipped)) continue;
+      const std::array<Index, 4> here = corners(over), beyond = corners(flipped);
+      const Jump before = lattice_.jump(t);
+      const Jump back = the_other_way(over);
+      if (has_flip) flip(flipped);
+      lattice_.set_jump(t, back);
+      if (is_better || lead_apex(t, swings - 1, flaws, true)) {
+        touch(here);
+        touch(beyond);
+        return true;
+      }
+      lattice_.set_jump(t, before);
+      if (has_flip) mark(flip(halfedge({beyond[2], beyond[3]})) / 2);
+    }
+    return false;
+  }
+
+  /// Returns the new edge.
+  Index flip(Index h) {
+    lattice_.flip(h);
+    return static_cast<Index>(map_.halfedges() - 2);
+  }
+
+  /// The jump against h by way of the other two edges of its triangle.
+  Jump the_other_way(Index h) const {
+    return composed(lattice_.jump(map_.next(h)), lattice_.jump(map_.prev(h)), lattice_.posy);
+  }
+
+  void add_leads(Index over, std::vector<Lead>& leads) {
+    const Index t = PolygonMap::twin(over);
+    if (lattice_.holes[t] || !lattice_.triangle(t).is_plane()) return;
+    const Jump back = the_other_way(over);
+    if (lattice_.leaves_axis(over, back.t)) return;
+    const Piece cone = piece(over), next = piece(t);
+    Piece left = cone;
+    left.lattice.around[0] = reversed(back, lattice_.posy);
+    const double longer = lattice_.metric().squared_length(back.t) - lattice_.squared_length(over);
+    const auto add = [&](Index flip, std::span<const Piece> before, std::span<const Piece> after) {
+      // On the border angles are free, and it would come to go astray.
+      const auto at_border = [&](Index v) { return lattice_.clusters.on_border[v] != 0; };
+      const auto touches_border = [&](const Piece& p) {
+        return std::ranges::any_of(p.corners, at_border);
+      };
+      if (std::ranges::any_of(before, touches_border) || !keeps_angles(before, after)) return;
+      const double more = flaws(after) - flaws(before);
+      const double cost = 4 * more + longer - (flip != no_index ? shortening(flip) : 0);
+      leads.push_back({ends(over), flip != no_index ? ends(flip) : no_edge, more, cost});
+    };
+    Piece entered = next;
+    entered.lattice.around[0] = back;
+    add(no_index, std::array<Piece, 2>{cone, next}, std::array<Piece, 2>{left, entered});
+    for (const Index e : {map_.next(t), map_.prev(t)}) {
+      const Index beyond = PolygonMap::twin(e);
+      if (!lattice_.may_flip(e) || !lattice_.triangle(beyond).is_plane()) continue;
+      auto [by_origin, by_target] = flipped(e);
+      // The edge of t is the last of the one triangle or the second of the other.
+      (e == map_.next(t) ? by_origin.lattice.around[2] : by_target.lattice.around[1]) = back;
+      add(e, std::array<Piece, 3>{cone, next, piece(beyond)},
+          std::array<Piece, 3>{left, by_origin, by_target});
+    }
+  }
+
   /// Takes vertices away where a feature line goes back the way that it came.
   bool unfold_lines() {
     bool any = false;
@@ -593,7 +716,7 @@ class LatticeRepair {
   IndexMarks zero_edges_, flips_, long_edges_;
   IndexMarks swings_, large_;  // halfedges
   IndexMarks unsound_;         // vertices with a flaw in their star, unless that went since
-  Refused shift_refused_, collapse_refused_;
+  Refused lead_refused_, shift_refused_, collapse_refused_;
   std::set<std::array<Index, 2>> split_;
 };
 

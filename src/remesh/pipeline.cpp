@@ -540,7 +540,7 @@ PositionField Pipeline::solve_positions() {
 
 double Pipeline::cancelling_cost(double regularity) const {
   const double middle = lattice_faces_ == OutputFaces::quads           ? 9.3
-                        : lattice_faces_ == OutputFaces::quad_dominant ? 15.0
+                        : lattice_faces_ == OutputFaces::quad_dominant ? 14.3
                                                                        : 11.2;
   // Dearer ways crumple the grid, and mending it takes as many irregular vertices as they save.
   constexpr double least = 0.28, most = 5.5;  // of that
