@@ -2,16 +2,16 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <numeric>
 #include <set>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "extract/apex_leader.h"
+#include "extract/lattice_pieces.h"
 #include "util/collect.h"
 #include "util/edge_of.h"
 #include "util/index_marks.h"
@@ -22,18 +22,7 @@ namespace {
 
 constexpr double least_gain = 1e-6;
 
-/// A triangle of the mesh as it is or as it might become. A corner that is not there yet has no
-/// index.
-struct Piece {
-  std::array<Index, 3> corners;
-  LatticeTriangle lattice;
-};
-
-double flaws(std::span<const Piece> pieces) {
-  double sum = 0;
-  for (const Piece& piece : pieces) sum += piece.lattice.flaw();
-  return sum;
-}
+using Piece = LatticePiece;
 
 class LatticeRepair {
  public:
@@ -58,12 +47,6 @@ class LatticeRepair {
   }
 
  private:
-  /// The corners of the two triangles beside an edge.
-  std::array<Index, 4> corners(Index h) const {
-    const Index t = PolygonMap::twin(h);
-    return {map_.origin(h), map_.origin(t), map_.origin(map_.prev(h)), map_.origin(map_.prev(t))};
-  }
-
   /// What the first round must look at, found in parallel: most of a lattice is whole.
   void mark_all(const Context& context) {
     const std::vector<std::uint8_t> whole = mark_triangles(context);
@@ -76,7 +59,7 @@ class LatticeRepair {
     mark_if(flips_, [&](Index e) {
       const Index h = 2 * e, t = h + 1;
       if (map_.removed(h) || lattice_.holes[h] || lattice_.holes[t]) return false;
-      if (whole[h] && whole[t]) return shortening(h) >= least_gain;
+      if (whole[h] && whole[t]) return pieces_.shortening(h) >= least_gain;
       return flip_gains(h).most() >= least_gain;
     });
   }
@@ -140,14 +123,10 @@ class LatticeRepair {
     lattice_.for_each_leaving(v, [&](Index h) { mark_star(map_.target(h)); });
   }
 
-  Piece piece(Index h) const {
-    return {{map_.origin(h), map_.target(h), map_.target(map_.next(h))}, lattice_.triangle(h)};
-  }
-
   void star(Index v, std::vector<Piece>& pieces) const {
     pieces.clear();
     lattice_.for_each_leaving(v, [&](Index h) {
-      if (!lattice_.holes[h]) pieces.push_back(piece(h));
+      if (!lattice_.holes[h]) pieces.push_back(pieces_.piece(h));
     });
   }
 
@@ -180,46 +159,6 @@ class LatticeRepair {
     bool any = false;
     lattice_.for_each_leaving(v, [&](Index h) { any = any || changed_[map_.target(h)] > since; });
     return any;
-  }
-
-  /// Whether every vertex keeps its angle in the lattice when some triangles take the place of
-  /// others, or gets the one that it should have. Else a star could come to go around twice though
-  /// none of its triangles is turned over. `gone` is not looked at.
-  bool keeps_angles(std::span<const Piece> before, std::span<const Piece> after,
-                    Index gone = no_index) {
-    changes_.clear();
-    const auto add = [&](const Piece& piece, double sign) {
-      for (int k = 0; k < 3; ++k) {
-        const Index v = piece.corners[k];
-        auto it = std::find_if(changes_.begin(), changes_.end(),
-                               [&](const Change& change) { return change.vertex == v; });
-        if (it == changes_.end()) it = changes_.insert(it, {v, 0});
-        it->angle += sign * piece.lattice.angle(k);
-      }
-    };
-    for (const Piece& piece : before) add(piece, -1);
-    for (const Piece& piece : after) add(piece, 1);
-    constexpr double tolerance = 1e-3;
-    return std::all_of(changes_.begin(), changes_.end(), [&](const Change& change) {
-      const Index v = change.vertex;
-      if (v == gone || v == no_index || std::abs(change.angle) < tolerance) return true;
-      if (lattice_.clusters.on_border[v] || lattice_.hold[v] == at_corner) return true;
-      const double angle = lattice_.total_angle(v) + change.angle;
-      return std::abs(angle - full_angle(v, after)) < tolerance;
-    });
-  }
-
-  /// A full turn, unless the vertex is the apex of one of its triangles.
-  static double full_angle(Index v, std::span<const Piece> pieces) {
-    for (const Piece& piece : pieces) {
-      if (!piece.lattice.is_cone()) continue;
-      for (int k = 0; k < 3; ++k) {
-        if (piece.corners[k] == v && piece.lattice.sum(k).is_zero()) {
-          return piece.lattice.apex_angle();
-        }
-      }
-    }
-    return 2 * std::numbers::pi;
   }
 
   bool collapse_zero_edges() {
@@ -260,7 +199,7 @@ class LatticeRepair {
         for (const Index side : {better, PolygonMap::twin(better)}) {
           const double gain = side == h ? gains.by_origin : gains.by_target;
           if (gain < least_gain || !flip_keeps_angles(side)) continue;
-          const std::array<Index, 4> around = corners(side);
+          const std::array<Index, 4> around = pieces_.corners(side);
           lattice_.flip(side);
           touch(around);
           again = any = true;
@@ -269,24 +208,6 @@ class LatticeRepair {
       }
     }
     return any;
-  }
-
-  /// The two triangles that flip(h) leaves: by the origin of h, and by its target.
-  std::array<Piece, 2> flipped(Index h) const {
-    const int posy = lattice_.posy;
-    const Index t = PolygonMap::twin(h);
-    const Index a = map_.origin(h), b = map_.target(h);
-    const Index c = map_.target(map_.next(h)), d = map_.target(map_.next(t));
-    const Jump cd = lattice_.flipped_jump(h), dc = reversed(cd, posy);
-    const Jump bc = lattice_.jump(map_.next(h)), ca = lattice_.jump(map_.prev(h));
-    const Jump ad = lattice_.jump(map_.next(t)), db = lattice_.jump(map_.prev(t));
-    return {{{{a, d, c}, {posy, {ad, dc, ca}}}, {{d, b, c}, {posy, {db, bc, cd}}}}};
-  }
-
-  /// By how much, squared, flip(h) makes the edge shorter.
-  double shortening(Index h) const {
-    return lattice_.squared_length(h) -
-           lattice_.metric().squared_length(lattice_.flipped_jump(h).t);
   }
 
   /// What is gained by flip(h) and by flip() of its twin.
@@ -303,16 +224,16 @@ class LatticeRepair {
     if (turn != 0 && other_turn != 0 && turn + other_turn != lattice_.posy) return {};
     const double before = left.flaw() + right.flaw();
     const auto gain = [&](Index side) {
-      const double most = before + shortening(side);
+      const double most = before + pieces_.shortening(side);
       // Most edges are short and between sound triangles: no need to look at those that would be.
-      return most < least_gain ? most : most - flaws(flipped(side));
+      return most < least_gain ? most : most - flaws(pieces_.flipped(side));
     };
     return {gain(h), gain(t)};
   }
 
   bool flip_keeps_angles(Index h) {
-    const std::array<Piece, 2> before{piece(h), piece(PolygonMap::twin(h))};
-    return keeps_angles(before, flipped(h));
+    const std::array<Piece, 2> before{pieces_.piece(h), pieces_.piece(PolygonMap::twin(h))};
+    return pieces_.keep_angles(before, pieces_.flipped(h));
   }
 
   /// An edge of a cone may pass the apex on either side. Gives it the jump by way of the other two
@@ -325,7 +246,7 @@ class LatticeRepair {
       const Index t = PolygonMap::twin(h);
       if (map_.removed(h) || lattice_.holes[h] || lattice_.holes[t]) continue;
       if (!lattice_.triangle(h).is_cone() || lattice_.triangle(t).is_cone()) continue;
-      const std::array<Piece, 2> before{piece(h), piece(t)};
+      const std::array<Piece, 2> before{pieces_.piece(h), pieces_.piece(t)};
       const Jump back = composed(before[0].lattice.around[1], before[0].lattice.around[2], posy);
       std::array<Piece, 2> after = before;
       after[0].lattice.around[0] = reversed(back, posy);
@@ -333,29 +254,20 @@ class LatticeRepair {
       const double gain = flaws(before) - flaws(after) + lattice_.squared_length(h) -
                           lattice_.metric().squared_length(back.t);
       if (lattice_.leaves_axis(h, back.t)) continue;
-      if (gain < least_gain || !keeps_angles(before, after)) continue;
+      if (gain < least_gain || !pieces_.keep_angles(before, after)) continue;
       lattice_.set_jump(t, back);
-      touch(corners(h));
+      touch(pieces_.corners(h));
       any = true;
     }
     return any;
   }
 
-  /// Leads the apexes of flawed cones to triangles that have room for them, over some edges: alone,
-  /// a swing of one of these, or a flip that makes room, would gain nothing.
+  /// Of flawed cones: see ApexLeader.
   bool lead_apexes() {
-    constexpr int most_swings = 3;
     bool any = false;
     for (Index v = unsound_.first(0); v != no_index; v = unsound_.first(v + 1)) {
       if (map_.leaving(v) == no_index || lead_refused_.still(v, *this) || is_sound(v)) continue;
-      std::vector<Edge> cones;
-      lattice_.for_each_leaving(v, [&](Index h) {
-        if (lattice_.holes[h]) return;
-        const LatticeTriangle triangle = lattice_.triangle(h);
-        if (triangle.is_cone() && triangle.flaw() > 0) cones.push_back(ends(h));
-      });
-      const auto lead = [&](const Edge& h) { return lead_apex(halfedge(h), most_swings, 0); };
-      if (std::ranges::any_of(cones, lead)) {
+      if (lead_apex_at(v)) {
         any = true;
       } else {
         lead_refused_.set(v, now_);
@@ -364,102 +276,19 @@ class LatticeRepair {
     return any;
   }
 
-  /// An edge that keeps its name when it is flipped and flipped back, which makes it another one.
-  using Edge = std::array<Index, 2>;
-  static constexpr Edge no_edge{no_index, no_index};
-
-  Edge ends(Index h) const { return {map_.origin(h), map_.target(h)}; }
-  Index halfedge(const Edge& ends) const {
-    Index found = no_index;
-    lattice_.for_each_leaving(ends[0], [&](Index h) {
-      if (map_.target(h) == ends[1]) found = h;
+  bool lead_apex_at(Index v) {
+    std::vector<Index> targets;  // of edges with flawed cones on their left
+    lattice_.for_each_leaving(v, [&](Index h) {
+      if (lattice_.holes[h]) return;
+      const LatticeTriangle triangle = lattice_.triangle(h);
+      if (triangle.is_cone() && triangle.flaw() > 0) targets.push_back(map_.target(h));
     });
-    return found;
-  }
-
-  /// A swing of the edge `over`, after a flip of the edge `flipped` beside it, if any.
-  struct Lead {
-    Edge over, flipped;
-    double flaws, cost;  // by how much there are more
-  };
-
-  /// The apex of the cone left of h, by up to so many swings, but not over h itself if it came from
-  /// there. `flaws_so_far`: by how much there are more by now. Returns whether there are less in
-  /// the end; else all is as it was.
-  bool lead_apex(Index h, int swings, double flaws_so_far, bool came_over_h = false) {
-    constexpr double least_better = 0.5, most_more = 2;
-    std::vector<Lead> leads;
-    if (!came_over_h) add_leads(h, leads);
-    add_leads(map_.next(h), leads);
-    add_leads(map_.prev(h), leads);
-    std::ranges::sort(leads, {}, &Lead::cost);
-    for (const Lead& lead : leads) {
-      const double flaws = flaws_so_far + lead.flaws;
-      const bool is_better = flaws <= -least_better;
-      if (!is_better && (swings == 1 || flaws > most_more)) continue;
-      const Index over = halfedge(lead.over), t = PolygonMap::twin(over);
-      const bool has_flip = lead.flipped != no_edge;
-      const Index flipped = has_flip ? halfedge(lead.flipped) : over;
-      if (has_flip && !lattice_.may_flip(flipped)) continue;
-      const std::array<Index, 4> here = corners(over), beyond = corners(flipped);
-      const Jump before = lattice_.jump(t);
-      const Jump back = the_other_way(over);
-      if (has_flip) flip(flipped);
-      lattice_.set_jump(t, back);
-      if (is_better || lead_apex(t, swings - 1, flaws, true)) {
-        touch(here);
-        touch(beyond);
-        return true;
-      }
-      lattice_.set_jump(t, before);
-      if (has_flip) mark(flip(halfedge({beyond[2], beyond[3]})) / 2);
-    }
-    return false;
-  }
-
-  /// Returns the new edge.
-  Index flip(Index h) {
-    lattice_.flip(h);
-    return static_cast<Index>(map_.halfedges() - 2);
-  }
-
-  /// The jump against h by way of the other two edges of its triangle.
-  Jump the_other_way(Index h) const {
-    return composed(lattice_.jump(map_.next(h)), lattice_.jump(map_.prev(h)), lattice_.posy);
-  }
-
-  void add_leads(Index over, std::vector<Lead>& leads) {
-    const Index t = PolygonMap::twin(over);
-    if (lattice_.holes[t] || !lattice_.triangle(t).is_plane()) return;
-    const Jump back = the_other_way(over);
-    if (lattice_.leaves_axis(over, back.t)) return;
-    const Piece cone = piece(over), next = piece(t);
-    Piece left = cone;
-    left.lattice.around[0] = reversed(back, lattice_.posy);
-    const double longer = lattice_.metric().squared_length(back.t) - lattice_.squared_length(over);
-    const auto add = [&](Index flip, std::span<const Piece> before, std::span<const Piece> after) {
-      // On the border angles are free, and it would come to go astray.
-      const auto at_border = [&](Index v) { return lattice_.clusters.on_border[v] != 0; };
-      const auto touches_border = [&](const Piece& p) {
-        return std::ranges::any_of(p.corners, at_border);
-      };
-      if (std::ranges::any_of(before, touches_border) || !keeps_angles(before, after)) return;
-      const double more = flaws(after) - flaws(before);
-      const double cost = 4 * more + longer - (flip != no_index ? shortening(flip) : 0);
-      leads.push_back({ends(over), flip != no_index ? ends(flip) : no_edge, more, cost});
-    };
-    Piece entered = next;
-    entered.lattice.around[0] = back;
-    add(no_index, std::array<Piece, 2>{cone, next}, std::array<Piece, 2>{left, entered});
-    for (const Index e : {map_.next(t), map_.prev(t)}) {
-      const Index beyond = PolygonMap::twin(e);
-      if (!lattice_.may_flip(e) || !lattice_.triangle(beyond).is_plane()) continue;
-      auto [by_origin, by_target] = flipped(e);
-      // The edge of t is the last of the one triangle or the second of the other.
-      (e == map_.next(t) ? by_origin.lattice.around[2] : by_target.lattice.around[1]) = back;
-      add(e, std::array<Piece, 3>{cone, next, piece(beyond)},
-          std::array<Piece, 3>{left, by_origin, by_target});
-    }
+    return std::ranges::any_of(targets, [&](Index target) {
+      const bool led = leader_.lead(v, target);
+      for (const Index h : leader_.remade()) mark(h / 2);
+      for (const auto& corners : leader_.changed()) touch(corners);
+      return led;
+    });
   }
 
   /// Takes vertices away where a feature line goes back the way that it came.
@@ -518,7 +347,7 @@ class LatticeRepair {
           const double left = flaws(after_);
           const double cost = left > enough ? least : left + against_stretching * misfit(v);
           lattice_.shift(v, {-x, -y});
-          if (cost >= least || !keeps_angles(before_, after_)) continue;
+          if (cost >= least || !pieces_.keep_angles(before_, after_)) continue;
           least = cost;
           best = {x, y};
         }
@@ -546,7 +375,7 @@ class LatticeRepair {
         if (!lattice_.may_collapse(into)) return;
         collapsed_star(into, after_);
         const double left = flaws(after_);
-        if (left >= least || !keeps_angles(before_, after_, v)) return;
+        if (left >= least || !pieces_.keep_angles(before_, after_, v)) return;
         least = left;
         best = into;
       });
@@ -570,7 +399,7 @@ class LatticeRepair {
     pieces.clear();
     for (Index g = map_.around(t); g != t; g = map_.around(g)) {
       if (lattice_.holes[g]) continue;
-      Piece moved = piece(g);
+      Piece moved = pieces_.piece(g);
       if (moved.corners[1] == a || moved.corners[2] == a) continue;
       moved.corners[0] = a;
       auto& around = moved.lattice.around;
@@ -680,7 +509,7 @@ class LatticeRepair {
     // Of the three new triangles that on the edge is plane, and one of the others: the jump to the
     // corner beyond may go by either end of the edge.
     const int posy = lattice_.posy;
-    const Piece whole = piece(edge);
+    const Piece whole = pieces_.piece(edge);
     const auto [a, b, c] = whole.corners;
     const auto& [ab, bc, ca] = whole.lattice.around;
     const Jump ax{0, t}, xa = reversed(ax, posy), xb = composed(xa, ab, posy);
@@ -693,7 +522,7 @@ class LatticeRepair {
                                         {{b, c, no_index}, {posy, {bc, reversed(xc, posy), xb}}},
                                         {{c, a, no_index}, {posy, {ca, ax, xc}}}}};
       const double cost = flaws(parts) + 0.01 * lattice_.metric().squared_length(xc.t);
-      if (cost >= least || !keeps_angles({&whole, 1}, parts)) continue;
+      if (cost >= least || !pieces_.keep_angles({&whole, 1}, parts)) continue;
       least = cost;
       best = &xc;
     }
@@ -705,12 +534,9 @@ class LatticeRepair {
 
   LatticeMesh& lattice_;
   const PolygonMap& map_;
+  LatticePieces pieces_{lattice_};
+  ApexLeader leader_{lattice_, pieces_};
   std::vector<Piece> before_, after_;
-  struct Change {
-    Index vertex;
-    double angle;
-  };
-  std::vector<Change> changes_;
   std::uint32_t now_ = 0;               // the number of changes so far
   std::vector<std::uint32_t> changed_;  // when each vertex's star last did
   IndexMarks zero_edges_, flips_, long_edges_;
