@@ -23,15 +23,14 @@ Index ApexLeader::halfedge(const Ends& ends) const {
 /// much there are more by now.
 bool ApexLeader::search(Index h, int swings, double flaws_so_far, bool came_over_h) {
   constexpr double least_better = 0.5, most_more = 2;
+  const double most = (swings > 1 ? most_more : -least_better) - flaws_so_far;
   std::vector<Lead> leads;
-  if (!came_over_h) find_over(h, leads);
-  find_over(map_.next(h), leads);
-  find_over(map_.prev(h), leads);
+  if (!came_over_h) find_over(h, most, leads);
+  find_over(map_.next(h), most, leads);
+  find_over(map_.prev(h), most, leads);
   std::ranges::sort(leads, {}, &Lead::cost);
   for (const Lead& lead : leads) {
     const double flaws = flaws_so_far + lead.flaws;
-    const bool is_better = flaws <= -least_better;
-    if (!is_better && (swings == 1 || flaws > most_more)) continue;
     const Index over = halfedge(lead.over), t = PolygonMap::twin(over);
     const bool has_flip = lead.flipped != no_edge;
     const Index flipped = has_flip ? halfedge(lead.flipped) : over;
@@ -40,7 +39,7 @@ bool ApexLeader::search(Index h, int swings, double flaws_so_far, bool came_over
     const Jump before = lattice_.jump(t), back = pieces_.the_other_way(over);
     if (has_flip) lattice_.flip(flipped);
     lattice_.set_jump(t, back);
-    if (is_better || search(t, swings - 1, flaws, true)) {
+    if (flaws <= -least_better || search(t, swings - 1, flaws, true)) {
       changed_.push_back(here);
       changed_.push_back(beyond);
       return true;
@@ -54,7 +53,7 @@ bool ApexLeader::search(Index h, int swings, double flaws_so_far, bool came_over
   return false;
 }
 
-void ApexLeader::find_over(Index over, std::vector<Lead>& leads) {
+void ApexLeader::find_over(Index over, double most_flaws, std::vector<Lead>& leads) {
   const Index t = PolygonMap::twin(over);
   if (lattice_.holes[t] || !lattice_.triangle(t).is_plane()) return;
   const Jump back = pieces_.the_other_way(over);
@@ -68,13 +67,14 @@ void ApexLeader::find_over(Index over, std::vector<Lead>& leads) {
   // `entered`: the cone then, among `after`.
   const auto add = [&](Index flip, std::span<const LatticePiece> before,
                        std::span<const LatticePiece> after, const LatticePiece& entered) {
+    const double more = flaws(after) - flaws(before);
+    if (more > most_flaws) return;
     // On the border angles are free, and it would come to go astray.
     const auto at_border = [&](Index v) { return lattice_.clusters.on_border[v] != 0; };
     const auto touches_border = [&](const LatticePiece& piece) {
       return std::ranges::any_of(piece.corners, at_border);
     };
     if (std::ranges::any_of(before, touches_border) || !pieces_.keep_angles(before, after)) return;
-    const double more = flaws(after) - flaws(before);
     double away = 0;  // squared, of the corners from the apex
     for (int k = 0; k < 3; ++k) away += metric.squared_length(entered.lattice.apex(k));
     const double shorter = flip != no_index ? pieces_.shortening(flip) : 0;

@@ -41,7 +41,8 @@ class ApexLeader {
   Index halfedge(const Ends& ends) const;
 
   bool search(Index h, int swings, double flaws_so_far, bool came_over_h);
-  void find_over(Index over, std::vector<Lead>& leads);
+  /// All that add no more flaws than that.
+  void find_over(Index over, double most_flaws, std::vector<Lead>& leads);
 
   LatticeMesh& lattice_;
   const PolygonMap& map_;
