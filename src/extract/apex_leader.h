@@ -38,7 +38,7 @@ class ApexLeader {
   };
 
   Ends ends(Index h) const { return {map_.origin(h), map_.target(h)}; }
-  Index halfedge(const Ends& ends) const;
+  Index halfedge(const Ends& ends) const { return map_.halfedge(ends[0], ends[1]); }
 
   bool search(Index h, int swings, double flaws_so_far, bool came_over_h);
   /// All that add no more flaws than that.

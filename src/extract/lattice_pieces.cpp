@@ -39,6 +39,14 @@ std::array<LatticePiece, 2> LatticePieces::flipped(Index h) const {
   return {{{{a, d, c}, {posy, {ad, dc, ca}}}, {{d, b, c}, {posy, {db, bc, cd}}}}};
 }
 
+std::array<LatticePiece, 2> LatticePieces::swung(Index h) const {
+  const Jump back = the_other_way(h);
+  std::array<LatticePiece, 2> result{piece(h), piece(PolygonMap::twin(h))};
+  result[0].lattice.around[0] = reversed(back, lattice_.posy);
+  result[1].lattice.around[0] = back;
+  return result;
+}
+
 bool LatticePieces::keep_angles(std::span<const LatticePiece> before,
                                 std::span<const LatticePiece> after, Index gone) {
   changes_.clear();

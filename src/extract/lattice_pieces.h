@@ -45,6 +45,9 @@ class LatticePieces {
     return composed(lattice_.jump(map_.next(h)), lattice_.jump(map_.prev(h)), lattice_.posy);
   }
 
+  /// The triangles left and right of h once it has that jump.
+  std::array<LatticePiece, 2> swung(Index h) const;
+
   /// Whether every vertex keeps its angle in the lattice when some triangles take the place of
   /// others, or gets the one that it should have. Else a star could come to go around twice though
   /// none of its triangles is turned over. `gone` is not looked at.

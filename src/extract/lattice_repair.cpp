@@ -240,17 +240,14 @@ class LatticeRepair {
   /// edges where that is better; the apex is then in the triangle beyond.
   bool swing_edges() {
     bool any = false;
-    const int posy = lattice_.posy;
     const auto count = static_cast<Index>(map_.halfedges());
     for (Index h = swings_.take(0, count); h != no_index; h = swings_.take(h + 1, count)) {
       const Index t = PolygonMap::twin(h);
       if (map_.removed(h) || lattice_.holes[h] || lattice_.holes[t]) continue;
       if (!lattice_.triangle(h).is_cone() || lattice_.triangle(t).is_cone()) continue;
       const std::array<Piece, 2> before{pieces_.piece(h), pieces_.piece(t)};
-      const Jump back = composed(before[0].lattice.around[1], before[0].lattice.around[2], posy);
-      std::array<Piece, 2> after = before;
-      after[0].lattice.around[0] = reversed(back, posy);
-      after[1].lattice.around[0] = back;
+      const std::array<Piece, 2> after = pieces_.swung(h);
+      const Jump back = after[1].lattice.around[0];
       const double gain = flaws(before) - flaws(after) + lattice_.squared_length(h) -
                           lattice_.metric().squared_length(back.t);
       if (lattice_.leaves_axis(h, back.t)) continue;

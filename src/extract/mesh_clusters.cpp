@@ -186,7 +186,7 @@ class Collapse {
           // Alone, both have no other edge.
           if (disks_.root[i] == i && disks_.root[j] == j) continue;
           const Index b = vertex[disks_.root[j]];
-          const Index h = b < cut ? halfedge_between(a, b) : no_index;
+          const Index h = b < cut ? map_.halfedge(a, b) : no_index;
           if (h == no_index) continue;
           found.push_back({i, j});
           halfedges.push_back(h);
@@ -207,16 +207,6 @@ class Collapse {
       least[other.edge] = other.deviation;
       jumps_[other.edge] = other.jump;
     }
-  }
-
-  Index halfedge_between(Index from, Index to) const {
-    const Index start = map_.leaving(from);
-    Index h = start;
-    do {
-      if (map_.target(h) == to) return h;
-      h = map_.around(h);
-    } while (h != start);
-    return no_index;
   }
 
   /// How far a jump is from the real distance between two vertices.

@@ -199,15 +199,15 @@ std::size_t PolygonMap::valence(Index vertex) const {
   return count;
 }
 
-bool PolygonMap::adjacent(Index a, Index b) const {
-  const Index start = leaving_[a];
-  if (start == no_index) return false;
+Index PolygonMap::halfedge(Index from, Index to) const {
+  const Index start = leaving_[from];
+  if (start == no_index) return no_index;
   Index h = start;
   do {
-    if (target(h) == b) return true;
+    if (target(h) == to) return h;
     h = around(h);
   } while (h != start);
-  return false;
+  return no_index;
 }
 
 std::size_t PolygonMap::degree(Index h) const {

@@ -50,7 +50,9 @@ class PolygonMap {
     } while (h != start);
   }
   std::size_t valence(Index vertex) const;
-  bool adjacent(Index a, Index b) const;
+  /// The halfedge from one vertex to another, or no_index.
+  Index halfedge(Index from, Index to) const;
+  bool adjacent(Index a, Index b) const { return halfedge(a, b) != no_index; }
 
   /// Calls `body` for the halfedges of h's orbit, from h on.
   template <typename Body>

@@ -8,11 +8,10 @@
 #include "field/bend_patch.h"
 #include "field/rosy.h"
 #include "util/collect.h"
+#include "util/indices.h"
 
 namespace meshgrain {
 namespace {
-
-constexpr std::size_t grain = 512;
 
 /// Bends over an edge, in radians, that are pulled at with half of the full strength.
 constexpr float half_bend = 0.35f;
@@ -56,14 +55,13 @@ std::vector<BendPatch> ring_patches(const Hierarchy& hierarchy, std::size_t leve
   const Graph& graph = hierarchy.levels[level];
   const std::size_t count = graph.size();
   std::vector<std::uint8_t> bends(count);
-  context.for_ranges(count, grain, [&](std::size_t begin, std::size_t end) {
-    context.check();
-    for (auto i = static_cast<Index>(begin); i < end; ++i) bends[i] = may_bend(graph, i);
-  });
+  for_indices(
+      count, [&](Index i) { bends[i] = may_bend(graph, i); }, context);
   if (std::ranges::find(bends, 1) == bends.end()) return {};
 
   const BendPatches patches(hierarchy, surface, around, creases, context);
   std::vector<BendPatch> own(count), sums(count);
+  constexpr std::size_t grain = 512;
   context.for_ranges(count, grain, [&](std::size_t begin, std::size_t end) {
     context.check();
     for (auto i = static_cast<Index>(begin); i < end; ++i) {
@@ -76,12 +74,8 @@ std::vector<BendPatch> ring_patches(const Hierarchy& hierarchy, std::size_t leve
       }
     }
   });
-  context.for_ranges(count, grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      sums[i] = own[i];
-      for (const Index j : graph.neighbors_of(i)) sums[i].add(own[j]);
-    }
-  });
+  for_indices(
+      count, [&](Index i) { sums[i] = with_neighbors(graph, own, i); }, context);
   return sums;
 }
 
@@ -89,14 +83,12 @@ std::vector<BendPatch> ring_patches(const Hierarchy& hierarchy, std::size_t leve
 std::vector<BendPatch> evened_out(const Graph& finer, const std::vector<Index>& parents,
                                   const std::vector<BendPatch>& patches, const Context& context) {
   std::vector<BendPatch> sums(finer.size());
-  context.for_ranges(finer.size(), grain, [&](std::size_t begin, std::size_t end) {
-    context.check();
-    for (std::size_t i = begin; i < end; ++i) {
-      sums[i] = patches[parents[i]];
-      if (sums[i].turn == 0) continue;
-      for (const Index j : finer.neighbors_of(i)) sums[i].add(patches[parents[j]]);
-    }
-  });
+  const auto sum_up = [&](Index i) {
+    sums[i] = patches[parents[i]];
+    if (sums[i].turn == 0) return;
+    for (const Index j : finer.neighbors_of(i)) sums[i].add(patches[parents[j]]);
+  };
+  for_indices(finer.size(), sum_up, context);
   return sums;
 }
 

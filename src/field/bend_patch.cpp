@@ -22,8 +22,7 @@ float dihedral_angle(const Vec3& edge, float length, const Vec3& left, const Vec
 
 }  // namespace
 
-void BendPatch::add(float bend, const Vec3& axis) {
-  const Vec3& u = axis;
+void BendPatch::add(float bend, const Vec3& u) {
   const std::array<float, 6> products{u.x() * u.x(), u.y() * u.y(), u.z() * u.z(),
                                       u.x() * u.y(), u.x() * u.z(), u.y() * u.z()};
   for (std::size_t k = 0; k < 6; ++k) form[k] += bend * products[k];
@@ -115,6 +114,12 @@ BendPatch BendPatches::of_vertex(Index a) const {
     patch.add(0.5f * angle * length, edge / length);
   }
   return patch;
+}
+
+BendPatch with_neighbors(const Graph& graph, const std::vector<BendPatch>& patches, Index node) {
+  BendPatch sum = patches[node];
+  for (const Index j : graph.neighbors_of(node)) sum.add(patches[j]);
+  return sum;
 }
 
 bool are_vertices(const Hierarchy& hierarchy, const Mesh& surface) {

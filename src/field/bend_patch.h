@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "features/feature_edges.h"
 #include "mesh/vertex_faces.h"
@@ -21,8 +22,8 @@ struct BendPatch {
   float area = 0;
   float turn = 0;  ///< As the form, but all bends added up without regard to sign and direction.
 
-  /// Adds a bend about the unit vector `axis`.
-  void add(float bend, const Vec3& axis);
+  /// Adds a bend about the unit vector u.
+  void add(float bend, const Vec3& u);
   void add(const BendPatch& other);
   float product(const Vec3& u, const Vec3& v) const;  ///< uᵀ form v
   float norm() const;  ///< sqrt(kmin² + kmax²) of the mean form, 0 without area.
@@ -54,6 +55,9 @@ class BendPatches {
   FeatureEdges creases_;
   std::optional<Curvature> curvature_;  // of the nodes, where these are not vertices
 };
+
+/// That of a node together with those of its neighbours.
+BendPatch with_neighbors(const Graph& graph, const std::vector<BendPatch>& patches, Index node);
 
 /// Whether the nodes of a hierarchy are the vertices of this mesh.
 bool are_vertices(const Hierarchy& hierarchy, const Mesh& surface);

@@ -1,6 +1,7 @@
 #include "field/bending.h"
 
 #include "field/bend_patch.h"
+#include "util/indices.h"
 
 namespace meshgrain {
 namespace {
@@ -35,13 +36,8 @@ std::vector<float> bending(const Hierarchy& hierarchy, const Mesh& surface,
     for (auto i = static_cast<Index>(begin); i < end; ++i) own[i] = patches.of(level, i);
   });
   std::vector<float> result(own.size());
-  context.for_ranges(own.size(), grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      BendPatch sum = own[i];
-      for (const Index j : graph.neighbors_of(i)) sum.add(own[j]);
-      result[i] = sum.norm();
-    }
-  });
+  const auto measure = [&](Index i) { result[i] = with_neighbors(graph, own, i).norm(); };
+  for_indices(own.size(), measure, context);
 
   // And down again, evened out on each level.
   for (; level > 0; --level) {

@@ -194,7 +194,6 @@ Graph cloud_graph(const Mesh& cloud, const GraphOptions& options, const Context&
 
 Graph vertex_graph(const Mesh& mesh, const VertexFaces& around, const GraphOptions& options,
                    const Context& context) {
-  require_triangles(mesh);
   Graph graph;
   graph.positions = mesh.positions;
   VertexMeasures measures = measure_vertices(mesh, around, context);
