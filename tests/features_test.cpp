@@ -12,6 +12,7 @@
 #include "features/fading_creases.h"
 #include "features/mechanical_creases.h"
 #include "kept_creases.h"
+#include "made_graph.h"
 #include "mesh/border.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
@@ -70,6 +71,19 @@ TEST(Features, NothingIsFoundOnRoundShapes) {
     mesh.positions[v] += step * Vec3(std::sin(12.9f * x), std::sin(78.2f * x), std::sin(37.7f * x));
   }
   EXPECT_TRUE(features_of(mesh).empty());
+}
+
+/// Of a sculpture with few large faces most edges may be sharp, but they are no creases; nor is it
+/// the scan of a part.
+TEST(Features, NothingIsFoundOnSculpturesOfFewFaces) {
+  const Mesh smooth = sample_shape("torus", 0.25);
+  const Mesh mesh = made::shaken(smooth, static_cast<float>(0.4 * edge_lengths(smooth).mean));
+  const auto [clear, doubtful] = crease_lengths(mesh, sharp_edges(mesh, flat_degrees), Context(1));
+  ASSERT_GT(clear, doubtful);
+  EXPECT_TRUE(features_of(mesh).empty());
+  RemeshOptions options;
+  options.face_count = 1000;
+  EXPECT_TRUE(remesh(mesh, options).report.notes.empty());
 }
 
 /// A long prism with so many sides, as a coarse cylinder.

@@ -45,10 +45,12 @@ bool is_noisy_part(const Mesh& triangles, const Context& context) {
   if (hint.clear < margin * hint.doubtful) return false;
   const CreaseLengths found = lengths_without_noise(sample, context);
   if (found.clear <= margin * clearly * found.doubtful) return false;
-  // Else there are creases without noise.
-  return mechanical_creases(triangles, rim_and_sharp_edges(triangles, flat_degrees, context),
-                            context)
-      .empty();
+  // Noise leaves few edges as sharp as creases: else these are there without it, or it is a
+  // sculpture with few large faces.
+  const RimAndSharpEdges edges = rim_and_sharp_edges(triangles, flat_degrees, context);
+  const CreaseLengths as_it_is = crease_lengths(triangles, edges.sharp, context);
+  return as_it_is.clear <= as_it_is.doubtful &&
+         mechanical_creases(triangles, edges, context).empty();
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "features/mechanical_creases.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -12,9 +13,7 @@
 namespace meshgrain {
 namespace {
 
-constexpr double sharp = 40;  // degrees
-// Of sculptures and scans it is hardly ever more than a half.
-constexpr double clean_enough = 0.8;
+constexpr double sharp = 40, less_sharp = 30;  // degrees
 
 double cosine_of(double degrees) {
   return std::cos(degrees * std::numbers::pi / 180);
@@ -32,6 +31,21 @@ double length_above(const Mesh& mesh, std::span<const SharpEdge> edges, double d
     return sum;
   };
   return sum_over_ranges(edges.size(), length, context);
+}
+
+bool is_mechanical(const Mesh& mesh, const RimAndSharpEdges& edges, const Context& context) {
+  // Of sculptures and scans the clean share is hardly ever more than a half.
+  constexpr double clean = 0.8, clean_enough = 0.6;
+  constexpr double clearly = 4;
+  const auto clean_share = [&](double degrees) {
+    return share_of_clean_lines(mesh, edges, degrees);
+  };
+  const auto [clear, doubtful] = crease_lengths(mesh, edges.sharp, context);
+  if (clear > clearly * doubtful) return true;  // even where noise has made the lines ragged
+  const double share = clean_share(sharp);
+  if (share > clean) return true;
+  // Of a sculpture with few large faces most edges may be sharp, but then they are no clean lines.
+  return clear > doubtful && std::max(share, clean_share(less_sharp)) > clean_enough;
 }
 
 /// Flags of those sharper than an angle at which it matters least.
@@ -79,10 +93,7 @@ std::vector<std::array<Index, 2>> clear_creases(const Mesh& mesh, std::span<cons
 std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh,
                                                      const RimAndSharpEdges& edges,
                                                      const Context& context) {
-  const CreaseLengths lengths = crease_lengths(mesh, edges.sharp, context);
-  const bool is_mechanical =
-      lengths.clear > lengths.doubtful || share_of_clean_lines(mesh, edges, sharp) > clean_enough;
-  if (!is_mechanical) return {};
+  if (!is_mechanical(mesh, edges, context)) return {};
   std::vector<std::uint8_t> is_crease = above_best_threshold(mesh, edges.sharp, context);
   follow_fading_creases(mesh, edges.sharp, is_crease);
   return flagged(edges.sharp, is_crease);
