@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mesh/border.h"
+#include "meshgrain/shapes.h"
 #include "meshgrain/surface.h"
 #include "meshgrain/triangulate.h"
 
@@ -146,6 +147,48 @@ TEST(Clean, NothingIsLeftOfOnlyDegenerateFaces) {
   clean(mesh);
   EXPECT_TRUE(mesh.positions.empty());
   EXPECT_TRUE(mesh.faces.empty());
+}
+
+/// Adds a triangle with two sides that stands on an edge of the mesh.
+void add_fin(Mesh& mesh, float height) {
+  const auto face = std::as_const(mesh.faces)[0];
+  const Index a = face[0], b = face[1], top = static_cast<Index>(mesh.positions.size());
+  const Vec3 middle = (mesh.positions[a] + mesh.positions[b]) / 2;
+  mesh.positions.push_back(middle * (1 + height));
+  mesh.faces.push_back({a, b, top});
+  mesh.faces.push_back({top, b, a});
+}
+
+TEST(Clean, RemovesBothSidesOfSmallFins) {
+  const Mesh sphere = sample_shape("sphere");
+  Mesh mesh = sphere;
+  add_fin(mesh, 0.1f);
+  const CleanReport report = clean(mesh);
+  EXPECT_EQ(report.fin_faces, 2u);
+  EXPECT_EQ(report.duplicate_faces, 0u);
+  EXPECT_EQ(report.unused_vertices, 1u);
+  EXPECT_TRUE(std::ranges::equal(mesh.faces.corners(), sphere.faces.corners()));
+  EXPECT_EQ(mesh.positions, sphere.positions);
+}
+
+/// Else nothing would be left of what is meant to have no thickness.
+TEST(Clean, KeepsOneSideOfLargeFinsAndOfSheets) {
+  Mesh mesh = sample_shape("sphere");
+  const std::size_t faces = mesh.faces.size();
+  add_fin(mesh, 30);
+  EXPECT_EQ(clean(mesh).fin_faces, 0u);
+  EXPECT_EQ(mesh.faces.size(), faces + 1);
+
+  Mesh sheet = sample_shape("plate");
+  const Faces one_side = sheet.faces;
+  for (std::size_t f = 0; f < one_side.size(); ++f) {
+    std::vector<Index> face(one_side[f].rbegin(), one_side[f].rend());
+    sheet.faces.push_back(face);
+  }
+  const CleanReport report = clean(sheet);
+  EXPECT_EQ(report.fin_faces, 0u);
+  EXPECT_EQ(report.duplicate_faces, one_side.size());
+  EXPECT_TRUE(std::ranges::equal(sheet.faces.corners(), one_side.corners()));
 }
 
 TEST(Clean, RemovesDuplicatePointsOfACloud) {

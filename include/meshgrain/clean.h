@@ -13,15 +13,17 @@ struct CleanReport {
   std::size_t repeated_corners = 0;
   /// Fewer than three corners after that, or twice the same edge in the same direction.
   std::size_t degenerate_faces = 0;
-  std::size_t duplicate_faces =
-      0;  ///< The corners of an earlier face, in the same or reverse order.
+  /// The corners of an earlier face, in the same or reverse order.
+  std::size_t duplicate_faces = 0;
+  /// Of small fins: two sides with the same corners, on a surface that is whole without them.
+  std::size_t fin_faces = 0;
   std::size_t unused_vertices = 0;   ///< Of no face that is left.
   std::size_t duplicate_points = 0;  ///< Point clouds only: at the position of an earlier point.
   std::size_t loose_marks = 0;       ///< Marked edges that are edges of no face that is left.
 
   bool any() const {
-    return repeated_corners + degenerate_faces + duplicate_faces + unused_vertices +
-               duplicate_points + loose_marks >
+    return repeated_corners + degenerate_faces + duplicate_faces + fin_faces +
+               unused_vertices + duplicate_points + loose_marks >
            0;
   }
 };

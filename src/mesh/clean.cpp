@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mesh/duplicates.h"
+#include "mesh/fins.h"
 #include "mesh/keep_vertices.h"
 #include "mesh/marks.h"
 #include "mesh/sort_by_vertex.h"
@@ -72,8 +73,7 @@ bool all_differ(std::span<const Keyed> faces) {
   return true;
 }
 
-/// The faces that have the corners of an earlier one.
-std::vector<Index> find_duplicates(const Faces& faces, std::size_t vertices,
+std::vector<EqualFaces> find_duplicates(const Faces& faces, std::size_t vertices,
                                    const Context& context) {
   // Those with the same lowest corner come to lie next to each other, without a sort of them all.
   UninitializedVector<Keyed> keyed(faces.size());
@@ -83,7 +83,8 @@ std::vector<Index> find_duplicates(const Faces& faces, std::size_t vertices,
     };
     return sort_by_lowest_vertex(faces, vertices, put, context);
   });
-  const auto duplicates_around = [&](std::size_t first, std::size_t last, std::vector<Index>& out) {
+  const auto duplicates_around = [&](std::size_t first, std::size_t last,
+                                     std::vector<EqualFaces>& out) {
     constexpr std::size_t few = 8;
     for (std::size_t v = first; v < last; ++v) {
       const std::span<Keyed> here(&keyed[0] + offsets[v], offsets[v + 1] - offsets[v]);
@@ -94,13 +95,13 @@ std::vector<Index> find_duplicates(const Faces& faces, std::size_t vertices,
           const Index f = here[k].face, g = here[earlier].face;
           if (faces.degree(f) != faces.degree(g)) continue;
           if (faces.degree(f) > 3 && canonical(faces[f]) != canonical(faces[g])) continue;
-          out.push_back(f);
+          out.push_back({f, g});
           break;
         }
       }
     }
   };
-  return collect<Index>(vertices, duplicates_around, context);
+  return collect<EqualFaces>(vertices, duplicates_around, context);
 }
 
 /// Whether a face goes twice from one vertex to the same other one: around itself again.
@@ -204,14 +205,17 @@ CleanReport clean(Mesh& mesh, const Context& context) {
 
   drop_repeated_corners(mesh, report, context);
   const auto duplicates = find_duplicates(mesh.faces, mesh.positions.size(), context);
-  report.duplicate_faces = duplicates.size();
   if (!duplicates.empty()) {
-    std::vector<std::uint8_t> is_duplicate(mesh.faces.size(), 0);
-    for (const Index f : duplicates) is_duplicate[f] = 1;
+    std::vector<std::uint8_t> goes(mesh.faces.size(), 0);
+    const std::vector<Index> fins = find_fins(mesh, duplicates);
+    for (const EqualFaces& pair : duplicates) goes[pair.later] = 1;
+    report.fin_faces = fins.size();
+    for (const Index f : fins) goes[f] = 1;
     const Faces faces = std::exchange(mesh.faces, {});
     for (std::size_t f = 0; f < faces.size(); ++f) {
-      if (!is_duplicate[f]) mesh.faces.push_back(faces[f]);
+      if (!goes[f]) mesh.faces.push_back(faces[f]);
     }
+    report.duplicate_faces = faces.size() - mesh.faces.size() - fins.size();
   }
   report.loose_marks = drop_loose_marks(mesh);
   report.unused_vertices = drop_unused_vertices(mesh, context);

@@ -15,6 +15,7 @@ std::vector<std::string> describe(const CleanReport& cleaned) {
   note(cleaned.repeated_corners, "repeated corners of faces");
   note(cleaned.degenerate_faces, "degenerate faces");
   note(cleaned.duplicate_faces, "duplicate faces");
+  note(cleaned.fin_faces, "faces of fins without thickness");
   note(cleaned.unused_vertices, "vertices that no face uses");
   note(cleaned.duplicate_points, "duplicate points");
   note(cleaned.loose_marks, "marked edges that no face has");
