@@ -88,7 +88,7 @@ void FaceRepair::part_straight_angles() {
     for (Index h = 0; h < map_.halfedges(); ++h) {
       if (map_.removed(h) || hole_[h]) continue;
       if (!is_between_lines(h, map_.prev(h))) continue;  // as nearly everywhere
-      if (!is_straight(h, map_.prev(h), face_normal(h))) continue;
+      if (!is_straight(h, map_.prev(h), face_normal(h)) || is_alone(h)) continue;
       if ((map_.degree(h) != 3 || make_room(h)) && part_face(h)) continue;
       // Not among triangles: nothing would part what is left into such again.
       if (posy_ == 4 && join_across_hole(h)) {
@@ -101,6 +101,14 @@ void FaceRepair::part_straight_angles() {
       if (posy_ == 4 && may_remove(across)) map_.remove_edge(across);
     }
   }
+}
+
+/// Whether a face is all of its piece. That is smaller than a face, and its border has no corners.
+bool FaceRepair::is_alone(Index h) const {
+  for (Index g = map_.next(h); g != h; g = map_.next(g)) {
+    if (!hole_[PolygonMap::twin(g)]) return false;
+  }
+  return hole_[PolygonMap::twin(h)] != 0;
 }
 
 /// Several faces in a row may lie across a hole, in the way of all edges that the border's vertices

@@ -144,6 +144,7 @@ class FaceRepair {
   Vec3 face_normal(Index h) const;
   /// Whether a face of that normal looks away from the surface at one of its vertices.
   bool is_turned_over(Index vertex, const Vec3& normal) const;
+  bool is_alone(Index h) const;
   bool make_room(Index h);
   bool join_across_hole(Index h);
   bool join_beyond(Index h);

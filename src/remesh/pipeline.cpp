@@ -123,6 +123,16 @@ bool Pipeline::is_coarse_for_bends() const {
          flattened_share(hierarchy_, 2 * std::pow(mean_length(), 2), context_) < little_bent;
 }
 
+bool Pipeline::has_many_holes() const {
+  // Each hole, handle or piece too small for the lattice takes about that many faces all the same.
+  constexpr double faces_each = 16, most_faces = 0.2;
+  const auto vertices = static_cast<double>(graph().size());
+  const auto edges = static_cast<double>(graph().neighbors.size() / 2);
+  const double euler = vertices - edges + static_cast<double>(surface_.faces.size());
+  const double faces = area_ / target_.face_area(area_);
+  return faces_each * std::abs(2 - euler) > most_faces * faces;
+}
+
 bool Pipeline::choose_lattice() {
   const bool free = options_.fine_lattice && options_.guides.empty() &&
                     options_.fields == nullptr && borders_.empty();
@@ -136,13 +146,15 @@ bool Pipeline::choose_lattice() {
            share_abreast(features_, on_border, 2 * side) > 0.6;
   };
   has_thin_limbs_ = is_coarse_for_bends();
-  if (!has_thin_limbs_ && !many_abreast({})) return false;  // nor are there without the borders
+  has_many_holes_ = has_many_holes();
+  const bool any = has_thin_limbs_ || has_many_holes_;
+  if (!any && !many_abreast({})) return false;  // nor are there without the borders
   const auto border = border_edges(surface_, context_);
   // Where more than two faces meet, all of them would have to get the same new vertices.
   if (rim_edges(surface_, context_).size() != border.size()) return false;
   std::vector<std::uint8_t> on_border(surface_.positions.size(), 0);
   for (const auto& [a, b] : border) on_border[a] = on_border[b] = 1;
-  if (!has_thin_limbs_ && !many_abreast(on_border)) return false;
+  if (!any && !many_abreast(on_border)) return false;
   aim_at(OutputFaces::quad_dominant);
   return true;
 }
@@ -435,7 +447,7 @@ void Pipeline::smooth_faces() {
 
 void Pipeline::try_coarser_lattice() {
   const auto inverted = [&] { return mesh_statistics(extraction_.mesh).inverted_quads; };
-  if (lattice_faces_ == options_.faces) return;
+  if (lattice_faces_ == options_.faces || has_many_holes_) return;
   const std::size_t before = inverted();
   if (before == 0) return;
   Extraction finer = std::exchange(extraction_, {});
