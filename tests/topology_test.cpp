@@ -74,5 +74,40 @@ TEST(Topology, SmallPiecesStayUnlessTheyAreNotWanted) {
   EXPECT_EQ(dropped.report.notes.size(), kept.report.notes.size() + 1);
 }
 
+/// A dense sphere like a scan with many faults: without every k-th triangle, which floats beside
+/// it.
+Mesh faulty_scan(std::size_t k) {
+  const Mesh sphere = sample_shape("sphere", 3);
+  Mesh scan;
+  scan.positions = sphere.positions;
+  for (std::size_t f = 0; f < sphere.faces.size(); ++f) {
+    const auto face = sphere.faces[f];
+    if (f % k != 0) {
+      scan.faces.push_back(face);
+      continue;
+    }
+    const auto first = static_cast<Index>(scan.positions.size());
+    for (const Index v : face) scan.positions.push_back(1.05f * sphere.positions[v]);
+    scan.faces.push_back({first, first + 1, first + 2});
+  }
+  return scan;
+}
+
+/// Holes and pieces that are nothing but faults take few faces from the rest.
+TEST(Topology, ManyTinyHolesAndPiecesLeaveTheShape) {
+  const Mesh scan = faulty_scan(500);
+  const MeshStatistics before = mesh_statistics(scan);
+  ASSERT_GT(before.boundary_loops, 180u);
+  RemeshOptions options;
+  options.face_count = 2000;
+  const MeshStatistics after = mesh_statistics(remesh(scan, options).mesh);
+  made::expect_same_topology(after, before);
+  EXPECT_EQ(after.quads, after.faces);
+  EXPECT_NEAR(static_cast<double>(after.faces), 2000, 20);
+  EXPECT_EQ(after.inverted_quads, 0u);
+  EXPECT_LT(after.area_sigma, 0.5);  // in a coarse lattice 0.81
+  EXPECT_LT(after.angle_sigma, 23);
+}
+
 }  // namespace
 }  // namespace meshgrain

@@ -22,8 +22,8 @@ struct CleanReport {
   std::size_t loose_marks = 0;       ///< Marked edges that are edges of no face that is left.
 
   bool any() const {
-    return repeated_corners + degenerate_faces + duplicate_faces + fin_faces +
-               unused_vertices + duplicate_points + loose_marks >
+    return repeated_corners + degenerate_faces + duplicate_faces + fin_faces + unused_vertices +
+               duplicate_points + loose_marks >
            0;
   }
 };

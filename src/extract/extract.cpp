@@ -15,8 +15,8 @@
 #include "extract/mesh_clusters.h"
 #include "extract/pair_odd_faces.h"
 #include "extract/polygon_map.h"
+#include "graph/pieces.h"
 #include "mesh/vertex_faces.h"
-#include "util/indices.h"
 #include "util/union_find.h"
 
 namespace meshgrain {
@@ -38,13 +38,7 @@ void drop_fragments(Extraction& extraction, const Graph& graph, const Context& c
   constexpr std::size_t fragment = 8;  // faces
   Mesh& mesh = extraction.mesh;
   UnionFind output(mesh.positions.size());
-  SharedUnionFind input(graph.size());
-  const auto unite_neighbors = [&](Index i) {
-    for (const Index j : graph.neighbors_of(i)) {
-      if (i < j) input.unite(i, j);
-    }
-  };
-  for_indices(graph.size(), unite_neighbors, context);
+  SharedUnionFind input = pieces_of(graph, context);
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     const auto face = std::as_const(mesh.faces)[f];
     for (const Index v : face) output.unite(face[0], v);

@@ -88,6 +88,10 @@ class Smoother {
   /// `put_on`: exactly onto the surface, at the end.
   void iterate(int iterations, bool put_on);
 
+  /// Lets the rims of holes that are far smaller than a face become a little larger: what is around
+  /// them could have no shape else.
+  void open_small_holes(const FeatureLines& lines);
+
   /// Pulls the mesh out to the ends of fingers and horns, and holds it there.
   void hold_ends();
 
@@ -308,6 +312,35 @@ void Smoother::iterate(int iterations, bool put_on) {
   }
 }
 
+void Smoother::open_small_holes(const FeatureLines& lines) {
+  constexpr float longest = 1, radius = 0.2f;  // sides of a face
+  const float side = mean_side(mesh_, sizes_, context_);
+  std::vector<Reach> holes(lines.size());
+  for (std::size_t line = 0; line < lines.size(); ++line) {
+    if (!lines.is_closed(line)) continue;
+    float length = 0;
+    Vec3 sum = Vec3::Zero();
+    for (Index k = lines.begin(line); k + 1 < lines.end(line); ++k) {
+      length += (lines.positions[k + 1] - lines.positions[k]).norm();
+      sum += lines.positions[k];
+    }
+    const auto count = static_cast<float>(lines.end(line) - lines.begin(line) - 1);
+    if (length < longest * side) holes[line].tip = sum / count, holes[line].radius = radius * side;
+  }
+  // A piece as small as that could not be any larger.
+  for (const auto& [a, b, line] : extraction_.line_edges) {
+    if (around_[a].size() < 2 || around_[b].size() < 2) holes[line].radius = 0;
+  }
+  for (const auto& [a, b, line] : extraction_.line_edges) {
+    if (!(holes[line].radius > 0)) continue;
+    for (const Index v : {a, b}) {
+      if (!placement_.release(v)) continue;
+      placement_.tether(v, mesh_.positions[v], extraction_.nodes[v], holes[line].tip,
+                        holes[line].radius);
+    }
+  }
+}
+
 void Smoother::hold_ends() {
   if (!nodes_are_vertices_ || options_.is_part) return;
   constexpr float share = 0.9f;
@@ -358,6 +391,7 @@ void smooth(Extraction& extraction, const Mesh& surface, const VertexFaces& arou
   const FeatureLines& features = options.features != nullptr ? *options.features : border;
   Smoother smoother(extraction, surface, around_surface, graph, features, options, context);
   if (options.iterations == 0) return;
+  smoother.open_small_holes(features);
   // Even sizes draw the surface's ends in first of all, so that they show early.
   constexpr int hold_after[] = {1, 2, 4}, whole = 6;  // sixths of the iterations
   const int iterations = smoother.iterations();

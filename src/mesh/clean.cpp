@@ -74,7 +74,7 @@ bool all_differ(std::span<const Keyed> faces) {
 }
 
 std::vector<EqualFaces> find_duplicates(const Faces& faces, std::size_t vertices,
-                                   const Context& context) {
+                                        const Context& context) {
   // Those with the same lowest corner come to lie next to each other, without a sort of them all.
   UninitializedVector<Keyed> keyed(faces.size());
   const std::vector<Index> offsets = with_corners(faces, [&](const auto& corners) {

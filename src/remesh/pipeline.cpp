@@ -16,6 +16,7 @@
 #include "finish/face_shape.h"
 #include "finish/smooth.h"
 #include "finish/untwist.h"
+#include "graph/pieces.h"
 #include "graph/vertex_graph.h"
 #include "mesh/border.h"
 #include "meshgrain/error.h"
@@ -26,6 +27,7 @@
 #include "remesh/count_search.h"
 #include "remesh/flattened_share.h"
 #include "remesh/notes.h"
+#include "util/indices.h"
 
 namespace meshgrain {
 namespace {
@@ -124,13 +126,17 @@ bool Pipeline::is_coarse_for_bends() const {
 }
 
 bool Pipeline::has_many_holes() const {
-  // Each hole, handle or piece too small for the lattice takes about that many faces all the same.
-  constexpr double faces_each = 16, most_faces = 0.2;
+  // What is too small for the coarse lattice takes about that many faces all the same.
+  constexpr double faces_a_hole = 14, faces_a_piece = 24, most = 0.2;
+  SharedUnionFind sets = pieces_of(graph(), context_);
+  const auto is_first = [&](Index i) { return sets.find(i) == i; };
+  const auto pieces = static_cast<double>(indices_where(graph().size(), is_first, context_).size());
   const auto vertices = static_cast<double>(graph().size());
   const auto edges = static_cast<double>(graph().neighbors.size() / 2);
   const double euler = vertices - edges + static_cast<double>(surface_.faces.size());
+  const double holes = 2 * pieces - euler;  // a handle counts as two
   const double faces = area_ / target_.face_area(area_);
-  return faces_each * std::abs(2 - euler) > most_faces * faces;
+  return faces_a_hole * holes + faces_a_piece * (pieces - 1) > most * faces;
 }
 
 bool Pipeline::choose_lattice() {

@@ -93,6 +93,7 @@ class Pipeline {
   void aim_at(OutputFaces lattice_faces);
   /// Whether there are few faces for how much the surface bends.
   bool is_coarse_for_bends() const;
+  /// Whether holes, handles and pieces could take many of the faces.
   bool has_many_holes() const;
   /// Returns whether the lattice is finer now.
   bool choose_lattice();
