@@ -125,9 +125,8 @@ bool Pipeline::is_coarse_for_bends() const {
          flattened_share(hierarchy_, 2 * std::pow(mean_length(), 2), context_) < little_bent;
 }
 
-bool Pipeline::has_many_holes() const {
-  // What is too small for the coarse lattice takes about that many faces all the same.
-  constexpr double faces_a_hole = 14, faces_a_piece = 24, most = 0.2;
+double Pipeline::share_of_holes() const {
+  constexpr double faces_a_hole = 14, faces_a_piece = 24;
   SharedUnionFind sets = pieces_of(graph(), context_);
   const auto is_first = [&](Index i) { return sets.find(i) == i; };
   const auto pieces = static_cast<double>(indices_where(graph().size(), is_first, context_).size());
@@ -136,7 +135,7 @@ bool Pipeline::has_many_holes() const {
   const double euler = vertices - edges + static_cast<double>(surface_.faces.size());
   const double holes = 2 * pieces - euler;  // a handle counts as two
   const double faces = area_ / target_.face_area(area_);
-  return faces_a_hole * holes + faces_a_piece * (pieces - 1) > most * faces;
+  return (faces_a_hole * holes + faces_a_piece * (pieces - 1)) / faces;
 }
 
 bool Pipeline::choose_lattice() {
@@ -152,8 +151,7 @@ bool Pipeline::choose_lattice() {
            share_abreast(features_, on_border, 2 * side) > 0.6;
   };
   has_thin_limbs_ = is_coarse_for_bends();
-  has_many_holes_ = has_many_holes();
-  const bool any = has_thin_limbs_ || has_many_holes_;
+  const bool any = has_thin_limbs_ || share_of_holes() > 0.1;
   if (!any && !many_abreast({})) return false;  // nor are there without the borders
   const auto border = border_edges(surface_, context_);
   // Where more than two faces meet, all of them would have to get the same new vertices.
@@ -453,9 +451,10 @@ void Pipeline::smooth_faces() {
 
 void Pipeline::try_coarser_lattice() {
   const auto inverted = [&] { return mesh_statistics(extraction_.mesh).inverted_quads; };
-  if (lattice_faces_ == options_.faces || has_many_holes_) return;
+  if (lattice_faces_ == options_.faces) return;
   const std::size_t before = inverted();
-  if (before == 0) return;
+  constexpr double hopeless = 0.2;
+  if (before == 0 || share_of_holes() > hopeless) return;
   Extraction finer = std::exchange(extraction_, {});
   PositionField positions = std::exchange(fields().position, {});
   auto energies = std::exchange(result_.report.position_energies, {});

@@ -93,8 +93,9 @@ class Pipeline {
   void aim_at(OutputFaces lattice_faces);
   /// Whether there are few faces for how much the surface bends.
   bool is_coarse_for_bends() const;
-  /// Whether holes, handles and pieces could take many of the faces.
-  bool has_many_holes() const;
+  /// Which share of the faces holes, handles and pieces take in a coarse lattice, where each may be
+  /// too small for it.
+  double share_of_holes() const;
   /// Returns whether the lattice is finer now.
   bool choose_lattice();
   FeatureOptions feature_options() const;
@@ -149,7 +150,6 @@ class Pipeline {
   // quads themselves, it is quad_dominant, and few of the others are left for extraction to mend.
   OutputFaces lattice_faces_ = OutputFaces::quads;
   bool has_thin_limbs_ = false;     // for its faces, see is_coarse_for_bends()
-  bool has_many_holes_ = false;     // or handles, or pieces, for its faces
   RemeshOptions wanted_;            // what the target goes by
   std::size_t clean_vertices_ = 0;  // of the input, without what clean_up() takes out
   bool is_sharpened_ = false;
