@@ -64,8 +64,8 @@ void prepare(Pipeline& pipeline, Mesh input) {
 void make_mesh(Pipeline& pipeline) {
   pipeline.position_and_extract();
   pipeline.smooth_faces();
-  pipeline.try_coarser_lattice();
   pipeline.untwist_faces();
+  pipeline.try_coarser_lattice();
   pipeline.report_fields();
 }
 

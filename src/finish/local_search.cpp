@@ -245,11 +245,16 @@ bool LocalSearch::improve(Index v) {
   // Most targets are far from being better: that is seen before they are put on the surface.
   constexpr float far = 1.02f;
   const bool is_seen = placement_.is_free(v) && mesh_.faces.size() >= few_faces;
+  // Where nothing is good nearby, as between sheets that lie on each other, it may be far away.
+  constexpr float farthest = 4;  // sides
+  const Vec3 middle = mean_neighbor(v);
+  const float reach = std::max(farthest * std::sqrt(mean_area_), (best - middle).norm());
   const auto attempt = [&](const Vec3& target) {
     mesh_.positions[v] = target;
     if (is_seen && shape_lack(v, star.upward, far * least) >= far * least) return;
     placement_.set_seed(v, best_seed);
     mesh_.positions[v] = placement_.place(target, v);
+    if ((mesh_.positions[v] - middle).norm() > reach) return;
     const float now = lack(v, star, least);
     if (now < least) {
       least = now;
@@ -257,7 +262,7 @@ bool LocalSearch::improve(Index v) {
       best_seed = placement_.seed(v);
     }
   };
-  attempt(mean_neighbor(v));
+  attempt(middle);
   for (float step = first_step(v) * length; step > 0.03f * length; step /= 2) {
     const Vec3 from = best;
     for (const auto& [along, across] : directions) {

@@ -465,6 +465,7 @@ void Pipeline::try_coarser_lattice() {
   find_faces();
   if (!extraction_.mesh.faces.empty()) {
     smooth_faces();
+    untwist_faces();
     if (inverted() < before) return;
   }
   extraction_ = std::move(finer);

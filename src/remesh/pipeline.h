@@ -54,11 +54,11 @@ class Pipeline {
   void position_and_extract();
   void smooth_faces();
 
-  /// Where refine_for_details() leaves inverted quads, what there would be without it: that is kept
-  /// if it has fewer.
-  void try_coarser_lattice();
   /// Quads that are twisted even then leave the surface.
   void untwist_faces();
+  /// Where refine_for_details() leaves inverted quads all the same, what there would be without it:
+  /// that is kept if it has fewer.
+  void try_coarser_lattice();
 
   /// Their edge length and singularities.
   void report_fields();
