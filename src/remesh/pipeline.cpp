@@ -13,6 +13,7 @@
 #include "features/lines_abreast.h"
 #include "field/bend_alignment.h"
 #include "field/transfer.h"
+#include "finish/crossings.h"
 #include "finish/face_shape.h"
 #include "finish/smooth.h"
 #include "finish/untwist.h"
@@ -450,11 +451,14 @@ void Pipeline::smooth_faces() {
 }
 
 void Pipeline::try_coarser_lattice() {
-  const auto inverted = [&] { return mesh_statistics(extraction_.mesh).inverted_quads; };
   if (lattice_faces_ == options_.faces) return;
-  const std::size_t before = inverted();
+  const auto inverted = [&] { return mesh_statistics(extraction_.mesh).inverted_quads; };
   constexpr double hopeless = 0.2;
-  if (before == 0 || share_of_holes() > hopeless) return;
+  if (inverted() == 0 || share_of_holes() > hopeless) return;
+  const auto faults = [&] {
+    return inverted() + find_crossings(extraction_.mesh, context_).size();
+  };
+  const std::size_t before = faults();
   Extraction finer = std::exchange(extraction_, {});
   PositionField positions = std::exchange(fields().position, {});
   auto energies = std::exchange(result_.report.position_energies, {});
@@ -466,7 +470,7 @@ void Pipeline::try_coarser_lattice() {
   if (!extraction_.mesh.faces.empty()) {
     smooth_faces();
     untwist_faces();
-    if (inverted() < before) return;
+    if (faults() < before) return;
   }
   extraction_ = std::move(finer);
   fields().position = std::move(positions);

@@ -57,7 +57,7 @@ class Pipeline {
   /// Quads that are twisted even then leave the surface.
   void untwist_faces();
   /// Where refine_for_details() leaves inverted quads all the same, what there would be without it:
-  /// that is kept if it has fewer.
+  /// that is kept if it has fewer of these and of crossings together.
   void try_coarser_lattice();
 
   /// Their edge length and singularities.
