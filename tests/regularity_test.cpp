@@ -86,6 +86,7 @@ TEST(Regularity, AMissedCountIsTold) {
   const Mesh shape = sample_shape("sphere", 0.15);
   RemeshOptions options;
   options.face_count = 100;
+  options.fine_lattice = false;
   options.features.creases = Creases::by_angle;
   options.features.crease_degrees = 1;
   for (const bool symmetric : {false, true}) {

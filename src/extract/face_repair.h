@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <span>
 #include <tuple>
@@ -44,6 +45,13 @@ class FaceRepair {
 
   // Quads (quad_repair.cpp).
 
+  struct EdgeChange {
+    int gain = 0;            // by how much the number of irregular faces and vertices falls
+    double cost = 0;         // how irregular the new faces are
+    Index h = no_index;      // of the edge to take away
+    int from = -1, to = -1;  // corners of the union, for an edge in its place; -1: none
+  };
+  void apply(const EdgeChange& change);
   /// Removes interior vertices with two edges, which no regular mesh has.
   void remove_doublets();
 
@@ -67,6 +75,11 @@ class FaceRepair {
   /// topology, the borders or the lines: where the two are nearest to each other first. Vertices
   /// with two edges may be left, see remove_doublets().
   std::vector<Index> ways_to_close(Index face) const;
+
+  /// How edges of a quad can be turned within it and the quad beyond.
+  std::vector<EdgeChange> ways_to_turn(Index face) const;
+  /// The corners of the two quads that this leaves.
+  std::array<std::array<Index, 4>, 2> turned(const EdgeChange& way) const;
 
   /// The opposite: cuts vertices with far too many edges in two, with a quad in between, as long as
   /// that leaves fewer irregular vertices.
@@ -119,14 +132,7 @@ class FaceRepair {
   double angle(Index v, Index from, Index to) const;
   double polygon_cost(std::span<const Index> corners) const;
   bool same_orbit(Index a, Index b) const;
-  struct EdgeChange {
-    int gain = 0;            // by how much the number of irregular faces and vertices falls
-    double cost = 0;         // how irregular the new faces are
-    Index h = no_index;      // of the edge to take away
-    int from = -1, to = -1;  // corners of the union, for an edge in its place; -1: none
-  };
   EdgeChange best_change(Index h) const;
-  void apply(const EdgeChange& change);
   /// An inner vertex of a quad mesh is regular with four edges, one of the border with three.
   static int regular_valence(bool on_border) { return on_border ? 3 : 4; }
   /// Whether a vertex is irregular for quads once it has `change` more edges.

@@ -261,6 +261,30 @@ std::vector<Index> FaceRepair::ways_to_close(Index face) const {
   return result;
 }
 
+std::vector<FaceRepair::EdgeChange> FaceRepair::ways_to_turn(Index face) const {
+  std::vector<EdgeChange> ways;
+  map_.for_orbit(face, [&](Index h) {
+    const Index t = PolygonMap::twin(h);
+    if (hole_[t] || map_.degree(h) != 4 || map_.degree(t) != 4) return;
+    if (!may_remove(h) || touches_itself(h)) return;
+    const std::vector<Index> around = union_halfedges(h);  // the edge was from its corner 3 to 0
+    for (const int from : {1, 2}) {
+      const int to = from + 3;
+      if (map_.adjacent(map_.origin(around[from]), map_.origin(around[to]))) continue;
+      ways.push_back({.h = h, .from = from, .to = to});
+    }
+  });
+  return ways;
+}
+
+std::array<std::array<Index, 4>, 2> FaceRepair::turned(const EdgeChange& way) const {
+  std::vector<Index> corners = union_halfedges(way.h);
+  for (Index& corner : corners) corner = map_.origin(corner);
+  std::ranges::rotate(corners, corners.begin() + way.from);
+  return {{{corners[0], corners[1], corners[2], corners[3]},
+           {corners[3], corners[4], corners[5], corners[0]}}};
+}
+
 void FaceRepair::close_quads(const Context& context) {
   IndexMarks marks;  // halfedges to look at: most quads need not be
   const auto mark_faces = [&](Index corner) {

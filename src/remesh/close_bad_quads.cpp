@@ -112,6 +112,42 @@ class Closing {
     return sum;
   }
 
+  /// The least sine of the corners of a quad at vertices that cannot move freely.
+  static float sine_where_held(const Corners& quad, const Clusters& clusters) {
+    const auto& positions = clusters.positions;
+    const Vec3 normal = area_vector(quad, positions).normalized();
+    float least = 1;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Index v = quad[k];
+      if (clusters.hold[v] == free_vertex && !clusters.on_border[v]) continue;
+      const Vec3 ahead = (positions[quad[(k + 1) % 4]] - positions[v]).normalized();
+      const Vec3 back = (positions[quad[(k + 3) % 4]] - positions[v]).normalized();
+      least = std::min(least, normal.dot(ahead.cross(back)));
+    }
+    return least;
+  }
+
+  /// The ways to turn an edge of a face, the best first, that leave quads which smoothing may mend.
+  static std::vector<FaceRepair::EdgeChange> good_turns(const FaceRepair& repair, Index face,
+                                                        const Clusters& clusters) {
+    constexpr float hardly_reflex = -0.5f;
+    constexpr std::size_t most = 2;
+    std::vector<FaceRepair::EdgeChange> ways;
+    for (FaceRepair::EdgeChange way : repair.ways_to_turn(face)) {
+      float least = 1, held = 1;
+      for (const Corners& quad : repair.turned(way)) {
+        least = std::min(least, scaled_jacobian(quad, clusters.positions));
+        held = std::min(held, sine_where_held(quad, clusters));
+      }
+      if (least < hardly_reflex || held < good) continue;
+      way.cost = -least;
+      ways.push_back(way);
+    }
+    std::ranges::stable_sort(ways, {}, &FaceRepair::EdgeChange::cost);
+    if (ways.size() > most) ways.resize(most);
+    return ways;
+  }
+
   /// Closes the first face of a piece in the first of some ways that leaves less wrong with it.
   /// Returns whether there is one.
   bool close(const Piece& piece, std::size_t ways, std::size_t most) {
@@ -125,9 +161,15 @@ class Closing {
       ExtractionMap parts = map;
       FaceRepair repair(parts.map, parts.clusters, 4, std::move(parts.holes),
                         std::move(parts.lines));
-      const std::vector<Index> all = repair.ways_to_close(static_cast<Index>(first));
-      if (way >= all.size()) return false;
-      repair.close_quad(all[way]);
+      // No face goes where it is enough to turn an edge, as at a straight angle of a crease.
+      const auto turns = good_turns(repair, static_cast<Index>(first), parts.clusters);
+      if (way < turns.size()) {
+        repair.apply(turns[way]);
+      } else {
+        const std::vector<Index> all = repair.ways_to_close(static_cast<Index>(first));
+        if (way - turns.size() >= all.size()) return false;
+        repair.close_quad(all[way - turns.size()]);
+      }
       repair.remove_doublets();
       std::vector<Index> vertex;
       Extraction changed = collect_faces(parts.map, repair, parts.clusters, vertex, context_);
