@@ -5,12 +5,12 @@
 
 namespace meshgrain {
 
-/// Takes away what no vertex can mend by moving: quads that smooth() leaves with a scaled Jacobian
-/// below 0.1, because more edges meet there than there is room for.
-/// Such a quad, or one beside it, is closed: two opposite corners become one vertex, in a piece of
-/// the mesh that is then smoothed again while its rim stays. That is kept only if fewer quads are
-/// bad and no more faces pass through each other. Topology, borders and features stay, and whatever
-/// is not manifold is left alone.
+/// Mends what no vertex can by moving: quads that smooth() leaves with a scaled Jacobian below 0.1,
+/// as an edge is missing there, or more edges meet than there is room for. An edge of such a quad
+/// is turned, or it is closed, or one beside it: two opposite corners become one vertex; in a piece
+/// of the mesh, which is then smoothed again while its rim stays. That is kept only if fewer quads
+/// are bad and no more faces pass through each other. Topology, borders and features stay, and
+/// whatever is not manifold is left alone.
 ///
 /// `smoothing`: what the mesh was smoothed with. At most `most` faces go.
 void close_bad_quads(Extraction& extraction, const Mesh& surface, const VertexFaces& around_surface,
