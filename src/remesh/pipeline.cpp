@@ -17,7 +17,6 @@
 #include "finish/face_shape.h"
 #include "finish/smooth.h"
 #include "finish/untwist.h"
-#include "graph/pieces.h"
 #include "graph/vertex_graph.h"
 #include "mesh/border.h"
 #include "meshgrain/error.h"
@@ -27,8 +26,8 @@
 #include "remesh/close_bad_quads.h"
 #include "remesh/count_search.h"
 #include "remesh/flattened_share.h"
+#include "remesh/holes_and_pieces.h"
 #include "remesh/notes.h"
-#include "util/indices.h"
 
 namespace meshgrain {
 namespace {
@@ -127,16 +126,8 @@ bool Pipeline::is_coarse_for_bends() const {
 }
 
 double Pipeline::share_of_holes() const {
-  constexpr double faces_a_hole = 14, faces_a_piece = 24;
-  SharedUnionFind sets = pieces_of(graph(), context_);
-  const auto is_first = [&](Index i) { return sets.find(i) == i; };
-  const auto pieces = static_cast<double>(indices_where(graph().size(), is_first, context_).size());
-  const auto vertices = static_cast<double>(graph().size());
-  const auto edges = static_cast<double>(graph().neighbors.size() / 2);
-  const double euler = vertices - edges + static_cast<double>(surface_.faces.size());
-  const double holes = 2 * pieces - euler;  // a handle counts as two
-  const double faces = area_ / target_.face_area(area_);
-  return (faces_a_hole * holes + faces_a_piece * (pieces - 1)) / faces;
+  return meshgrain::share_of_holes(graph(), surface_.faces.size(), area_ / target_.face_area(area_),
+                                   context_);
 }
 
 bool Pipeline::choose_lattice() {
@@ -408,6 +399,18 @@ bool Pipeline::change_quads(Extraction& extraction, const Change& change) {
   extraction = std::move(quads);
   is_split_ = true;
   return true;
+}
+
+void Pipeline::note_scraps() {
+  constexpr std::ptrdiff_t many = 10;
+  if (is_cloud_ || options_.min_component > 0) return;
+  const double face = target_.face_area(area_);
+  const auto scraps = std::ranges::count_if(piece_areas(graph(), context_),
+                                            [&](double area) { return area < face; });
+  if (scraps < many) return;
+  result_.report.notes.push_back(std::to_string(scraps) +
+                                 " pieces are smaller than a face, and take faces all the same: "
+                                 "--min-component 1 leaves them out");
 }
 
 void Pipeline::report_fields() {

@@ -60,6 +60,8 @@ class Pipeline {
   /// that is kept if it has fewer of these and of crossings together.
   void try_coarser_lattice();
 
+  /// If there are many pieces smaller than a face.
+  void note_scraps();
   /// Their edge length and singularities.
   void report_fields();
 
@@ -93,9 +95,7 @@ class Pipeline {
   void aim_at(OutputFaces lattice_faces);
   /// Whether there are few faces for how much the surface bends.
   bool is_coarse_for_bends() const;
-  /// Which share of the faces holes, handles and pieces take in a coarse lattice, where each may be
-  /// too small for it.
-  double share_of_holes() const;
+  double share_of_holes() const;  // of the faces wanted
   /// Returns whether the lattice is finer now.
   bool choose_lattice();
   FeatureOptions feature_options() const;

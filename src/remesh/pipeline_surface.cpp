@@ -50,9 +50,11 @@ void Pipeline::drop_pieces() {
   if (is_cloud_ || options_.min_component == 0) return;
   const double area = options_.min_component * target_.face_area(surface_area(surface_, context_));
   if (const std::size_t dropped = drop_small_pieces(surface_, area)) {
-    result_.report.notes.push_back("left out " + std::to_string(dropped) +
-                                   " pieces with room for fewer than " +
-                                   std::to_string(std::lround(options_.min_component)) + " faces");
+    const long least = std::lround(options_.min_component);
+    result_.report.notes.push_back(
+        "left out " + std::to_string(dropped) +
+        (least == 1 ? " pieces smaller than a face"
+                    : " pieces with room for fewer than " + std::to_string(least) + " faces"));
   }
 }
 
