@@ -16,7 +16,7 @@ struct Reach {
   Index node;  ///< The nearest one of the surface.
   Vec3 position;
   Vec3 tip;
-  float radius = 0;  ///< How near to the tip it should stay.
+  float radius;  ///< How near to the tip it should stay.
 };
 
 /// Where fingers, horns and ears of the surface stick out of the mesh by more than `reach` (one for

@@ -315,28 +315,31 @@ void Smoother::iterate(int iterations, bool put_on) {
 void Smoother::open_small_holes(const FeatureLines& lines) {
   constexpr float longest = 1, radius = 0.2f;  // sides of a face
   const float side = mean_side(mesh_, sizes_, context_);
-  std::vector<Reach> holes(lines.size());
+  struct Rim {
+    bool is_small = false;
+    Vec3 middle = Vec3::Zero();
+  };
+  std::vector<Rim> rims(lines.size());
   for (std::size_t line = 0; line < lines.size(); ++line) {
     if (!lines.is_closed(line)) continue;
+    const Index begin = lines.begin(line), last = lines.end(line) - 1;
     float length = 0;
-    Vec3 sum = Vec3::Zero();
-    for (Index k = lines.begin(line); k + 1 < lines.end(line); ++k) {
+    for (Index k = begin; k < last; ++k) {
       length += (lines.positions[k + 1] - lines.positions[k]).norm();
-      sum += lines.positions[k];
+      rims[line].middle += lines.positions[k] / static_cast<float>(last - begin);
     }
-    const auto count = static_cast<float>(lines.end(line) - lines.begin(line) - 1);
-    if (length < longest * side) holes[line].tip = sum / count, holes[line].radius = radius * side;
+    rims[line].is_small = length < longest * side;
   }
   // A piece as small as that could not be any larger.
   for (const auto& [a, b, line] : extraction_.line_edges) {
-    if (around_[a].size() < 2 || around_[b].size() < 2) holes[line].radius = 0;
+    if (around_[a].size() < 2 || around_[b].size() < 2) rims[line].is_small = false;
   }
   for (const auto& [a, b, line] : extraction_.line_edges) {
-    if (!(holes[line].radius > 0)) continue;
+    if (!rims[line].is_small) continue;
     for (const Index v : {a, b}) {
       if (!placement_.release(v)) continue;
-      placement_.tether(v, mesh_.positions[v], extraction_.nodes[v], holes[line].tip,
-                        holes[line].radius);
+      placement_.tether(v, mesh_.positions[v], extraction_.nodes[v], rims[line].middle,
+                        radius * side);
     }
   }
 }
