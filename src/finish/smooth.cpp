@@ -326,8 +326,9 @@ void Smoother::open_small_holes(const FeatureLines& lines) {
     float length = 0;
     for (Index k = begin; k < last; ++k) {
       length += (lines.positions[k + 1] - lines.positions[k]).norm();
-      rims[line].middle += lines.positions[k] / static_cast<float>(last - begin);
+      rims[line].middle += lines.positions[k];
     }
+    rims[line].middle /= static_cast<float>(last - begin);
     rims[line].is_small = length < longest * side;
   }
   // A piece as small as that could not be any larger.
