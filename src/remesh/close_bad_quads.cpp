@@ -23,7 +23,7 @@ namespace {
 
 constexpr float good = 0.1f;    // a scaled Jacobian
 constexpr int iterations = 12;  // of smoothing a piece
-// How large the pieces are, in rings of faces around the bad one, and in how many ways it is closed
+// How large the pieces are, in rings of faces around the bad one, and in how many ways it is mended
 // there.
 constexpr struct {
   int rings;

@@ -143,11 +143,10 @@ bool Pipeline::choose_lattice() {
            share_abreast(features_, on_border, 2 * side) > 0.6;
   };
   has_thin_limbs_ = is_coarse_for_bends();
-  // Among more faces they are little to see, for twice the time and the memory.
-  constexpr double most_faces = 30000;
-  const bool has_many_holes =
-      area_ < most_faces * target_.face_area(area_) && share_of_holes() > 0.1;
-  const bool any = has_thin_limbs_ || has_many_holes;
+  // Among more faces holes are little to see, for twice the time and the memory.
+  constexpr double most_faces = 30000, little = 0.1;
+  const bool any = has_thin_limbs_ ||
+                   (area_ < most_faces * target_.face_area(area_) && share_of_holes() > little);
   if (!any && !many_abreast({})) return false;  // nor are there without the borders
   const auto border = border_edges(surface_, context_);
   // Where more than two faces meet, all of them would have to get the same new vertices.
