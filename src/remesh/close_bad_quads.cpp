@@ -53,7 +53,7 @@ class Closing {
     tries_left_ = tries + count / faces_a_try;
     while (gone() < most && close_one(most - gone())) {
     }
-    if (gone() > 0) drop_unused(whole_);
+    if (any_changed_) drop_unused(whole_);
   }
 
  private:
@@ -190,6 +190,7 @@ class Closing {
       };
       if (crossings(result) > crossings(whole_)) continue;
       whole_ = std::move(result);
+      any_changed_ = true;
       return true;
     }
     return false;
@@ -216,6 +217,7 @@ class Closing {
   SmoothOptions smoothing_;
   const Context& context_;
   std::size_t tries_left_ = 0;
+  bool any_changed_ = false;
   std::set<Corners> seen_;
 };
 
