@@ -40,6 +40,8 @@ struct SmoothOptions {
   bool is_part = false;
   /// Corners stay even where the faces around them are bad.
   bool corners_stay = false;
+  /// And so do all vertices on lines, but those of the border.
+  bool creases_stay = false;
 };
 
 /// Evens the faces out: each iteration moves every vertex to the mean of where it would be in the

@@ -13,6 +13,7 @@
 #include "extract/lattice_mesh.h"
 #include "extract/lattice_repair.h"
 #include "extract/mesh_clusters.h"
+#include "extract/open_strips.h"
 #include "extract/pair_odd_faces.h"
 #include "extract/polygon_map.h"
 #include "graph/pieces.h"
@@ -160,6 +161,7 @@ Extraction extract_from_mesh(const Graph& graph, const OrientationField& orienta
                                           options.energy, context);
   LatticeMesh lattice(std::move(collapsed.lattice), std::move(collapsed.clusters), collapsed.roots,
                       graph, orientation, position);
+  open_strips(lattice);
   repair_lattice(lattice, context);
   cancel_position_singularities(
       lattice, {options.cancelling_cost, options.cancelling_cost_where_graded}, context);

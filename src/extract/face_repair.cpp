@@ -66,10 +66,13 @@ bool FaceRepair::is_turned_over(Index vertex, const Vec3& normal) const {
 }
 
 bool FaceRepair::is_straight(Index to, Index from, const Vec3& normal) const {
-  const Index v = map_.origin(to);
+  return is_straight(map_.origin(to), map_.target(to), map_.origin(from), normal);
+}
+
+bool FaceRepair::is_straight(Index v, Index ahead, Index back, const Vec3& normal) const {
   if (clusters_.hold[v] != at_corner) return true;
-  const Vec3 a = clusters_.positions[map_.target(to)] - clusters_.positions[v];
-  const Vec3 b = clusters_.positions[map_.origin(from)] - clusters_.positions[v];
+  const Vec3 a = clusters_.positions[ahead] - clusters_.positions[v];
+  const Vec3 b = clusters_.positions[back] - clusters_.positions[v];
   constexpr float straight = -0.6f;
   return is_turned_over(v, normal) != (normal.dot(a.cross(b)) < 0) ||
          a.dot(b) < straight * a.norm() * b.norm();

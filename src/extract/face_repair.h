@@ -139,14 +139,21 @@ class FaceRepair {
   bool is_irregular(Index vertex, int change) const;
   /// The halfedges around the two faces of an edge, without it.
   std::vector<Index> union_halfedges(Index h) const;
+  /// Whether an edge between two of those would be held, and leave a straight angle beside it.
+  bool leaves_straight_angle(const std::vector<Index>& around, int from, int to) const;
   /// Whether what the two become without the edge would have a corner twice.
   bool touches_itself(Index h) const;
-  bool is_between_lines(Index to, Index from) const {
-    return line(to) != no_index && line(from) != no_index;
+  /// Whether a vertex is at a corner of creases: those of the border may be let go.
+  bool stays(Index v) const { return clusters_.hold[v] == at_corner && !clusters_.on_border[v]; }
+  /// Whether an edge stays where it is: on a line, or from one corner of creases to another.
+  bool is_held(Index h) const {
+    return line(h) != no_index || (stays(map_.origin(h)) && stays(map_.target(h)));
   }
+  bool is_between_lines(Index to, Index from) const { return is_held(to) && is_held(from); }
   /// Whether a face between two edges of feature lines, that leave the origin of `to` and come from
   /// `from`, has a straight angle there. `normal` is that of the face.
   bool is_straight(Index to, Index from, const Vec3& normal) const;
+  bool is_straight(Index v, Index ahead, Index back, const Vec3& normal) const;
   Vec3 face_normal(Index h) const;
   /// Whether a face of that normal looks away from the surface at one of its vertices.
   bool is_turned_over(Index vertex, const Vec3& normal) const;

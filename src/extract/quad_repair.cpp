@@ -93,6 +93,24 @@ std::vector<Index> FaceRepair::union_halfedges(Index h) const {
   return halfedges;
 }
 
+bool FaceRepair::leaves_straight_angle(const std::vector<Index>& around, int from, int to) const {
+  const auto n = static_cast<int>(around.size());
+  for (int turn = 0; turn < 2; ++turn, std::swap(from, to)) {  // the faces on both sides
+    const Index a = map_.origin(around[from]), b = map_.origin(around[to]);
+    if (!stays(a) || !stays(b)) return false;
+    Vec3 normal = Vec3::Zero();
+    for (int k = from; k != to; k = (k + 1) % n) {
+      const Vec3& base = clusters_.positions[a];
+      normal += (clusters_.positions[map_.origin(around[k])] - base)
+                    .cross(clusters_.positions[map_.target(around[k])] - base);
+    }
+    const Index first = around[from], last = around[(to + n - 1) % n];
+    if (is_held(first) && is_straight(a, map_.target(first), b, normal)) return true;
+    if (is_held(last) && is_straight(b, a, map_.origin(last), normal)) return true;
+  }
+  return false;
+}
+
 FaceRepair::EdgeChange FaceRepair::best_change(Index h) const {
   EdgeChange best;
   const Index t = PolygonMap::twin(h);
@@ -111,8 +129,9 @@ FaceRepair::EdgeChange FaceRepair::best_change(Index h) const {
   if (gain_of_removal <= -2) return best;
 
   const bool needs_rung[2] = {is_last_rung(h), is_last_rung(t)};
-  std::vector<Index> corners = union_halfedges(h);
-  for (Index& corner : corners) corner = map_.origin(corner);
+  const std::vector<Index> around = union_halfedges(h);
+  std::vector<Index> corners;
+  for (const Index g : around) corners.push_back(map_.origin(g));
   if (has_repeats(corners)) return best;
   const auto loses = [&](Index v) { return v == ends[0] || v == ends[1]; };
   const auto keep_better = [&](int gain, double cost, int from, int to) {
@@ -138,6 +157,7 @@ FaceRepair::EdgeChange FaceRepair::best_change(Index h) const {
         gain += is_irregular(v, before) - is_irregular(v, before + 1);
       }
       if (gain <= 0 || gain < best.gain || map_.adjacent(corners[from], corners[to])) continue;
+      if (leaves_straight_angle(around, from, to)) continue;
       std::vector<Index> face(corners.begin() + from, corners.begin() + to + 1);
       double cost = polygon_cost(face);
       face.assign(corners.begin() + to, corners.end());

@@ -10,6 +10,7 @@
 
 #include "finish/crossings.h"
 #include "finish/face_shape.h"
+#include "mesh/border.h"
 #include "util/sort_unique.h"
 
 namespace meshgrain {
@@ -257,7 +258,7 @@ class Mending {
   /// Lets the vertices of bad faces leave their feature lines, and move over the surface.
   bool leave_lines(const Place& place) {
     bool any = false;
-    for (const Index v : place.at_bad) any = placement_.release(v) || any;
+    for (const Index v : place.at_bad) any = (may_be_let_go(v) && placement_.release(v)) || any;
     return any && slide(place);
   }
 
@@ -268,7 +269,16 @@ class Mending {
     if (placement_.is_free(v)) return true;
     if (placement_.is_tethered(v)) return who != Who::free;
     return who == Who::free_and_at_bad && !(options_.corners_stay && placement_.is_fixed(v)) &&
-           std::ranges::binary_search(place.at_bad, v);
+           may_be_let_go(v) && std::ranges::binary_search(place.at_bad, v);
+  }
+
+  bool may_be_let_go(Index v) const {
+    if (!options_.creases_stay) return true;
+    if (on_border_.empty()) {
+      on_border_.assign(mesh_.positions.size(), 0);
+      for (const auto& [a, b] : border_edges(mesh_, context_)) on_border_[a] = on_border_[b] = 1;
+    }
+    return on_border_[v] != 0;
   }
 
   /// Off the surface, but not far: each vertex towards its neighbours, until nothing crosses.
@@ -307,6 +317,7 @@ class Mending {
   Demands demands_ = ever_less[0];
   std::size_t failed_slides_ = 0;
   double effort_left_ = 0;
+  mutable std::vector<std::uint8_t> on_border_;  // of each vertex, once it is asked for
   const Context& context_;
 };
 

@@ -77,10 +77,12 @@ std::vector<std::vector<Index>> batches_of(const Faces& faces, const Which& whic
 /// in those, and back onto the surface.
 class Smoother {
  public:
-  /// Puts all vertices onto the surface.
+  enum class Start { on_surface, as_it_is };
+
+  /// May put all vertices onto the surface.
   Smoother(Extraction& extraction, const Mesh& surface, const VertexFaces& around_surface,
            const Graph& graph, const FeatureLines& features, const SmoothOptions& options,
-           const Context& context);
+           Start start, const Context& context);
 
   /// How many there are to be.
   int iterations() const;
@@ -158,7 +160,7 @@ class Smoother {
 
 Smoother::Smoother(Extraction& extraction, const Mesh& surface, const VertexFaces& around_surface,
                    const Graph& graph, const FeatureLines& features, const SmoothOptions& options,
-                   const Context& context)
+                   Start start, const Context& context)
     : extraction_(extraction),
       mesh_(extraction.mesh),
       graph_(graph),
@@ -182,6 +184,10 @@ Smoother::Smoother(Extraction& extraction, const Mesh& surface, const VertexFace
   normals_.resize(mesh_.positions.size());
   touches_.resize(mesh_.positions.size());
   previous_ = mesh_.positions;
+  if (start == Start::as_it_is) {
+    placement_.go_around(around_);
+    return;
+  }
   move_vertices(
       [&](Index v) {
         if (options.iterations > 0 && placement_.is_free(v)) return true;
@@ -377,6 +383,13 @@ void Smoother::keep_to_own_side() {
   meshgrain::keep_to_own_side(mesh_, around_, placement_, normals_, fit, context_);
 }
 
+/// The lines to follow if there are none given.
+FeatureLines border_if_needed(const Mesh& surface, const SmoothOptions& options,
+                              const Context& context) {
+  if (options.features != nullptr || surface.is_point_cloud()) return {};
+  return find_features(surface, {.creases = Creases::none, .align_border = false}, 0, context);
+}
+
 }  // namespace
 
 void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
@@ -388,12 +401,10 @@ void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
 
 void smooth(Extraction& extraction, const Mesh& surface, const VertexFaces& around_surface,
             const Graph& graph, const SmoothOptions& options, const Context& context) {
-  FeatureLines border;
-  if (options.features == nullptr && !surface.is_point_cloud()) {
-    border = find_features(surface, {.creases = Creases::none, .align_border = false}, 0, context);
-  }
+  const FeatureLines border = border_if_needed(surface, options, context);
   const FeatureLines& features = options.features != nullptr ? *options.features : border;
-  Smoother smoother(extraction, surface, around_surface, graph, features, options, context);
+  Smoother smoother(extraction, surface, around_surface, graph, features, options,
+                    Smoother::Start::on_surface, context);
   if (options.iterations == 0) return;
   smoother.open_small_holes(features);
   // Even sizes draw the surface's ends in first of all, so that they show early.
@@ -410,6 +421,15 @@ void smooth(Extraction& extraction, const Mesh& surface, const VertexFaces& arou
   smoother.mend();
   smoother.fit_faces();
   smoother.keep_to_own_side();
+}
+
+void mend(Extraction& extraction, const Mesh& surface, const VertexFaces& around_surface,
+          const Graph& graph, const SmoothOptions& options, const Context& context) {
+  const FeatureLines border = border_if_needed(surface, options, context);
+  const FeatureLines& features = options.features != nullptr ? *options.features : border;
+  Smoother(extraction, surface, around_surface, graph, features, options, Smoother::Start::as_it_is,
+           context)
+      .mend();
 }
 
 }  // namespace meshgrain

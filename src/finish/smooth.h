@@ -10,4 +10,9 @@ namespace meshgrain {
 void smooth(Extraction& extraction, const Mesh& surface, const VertexFaces& around_surface,
             const Graph& graph, const SmoothOptions& options, const Context& context);
 
+/// The last step of smooth() alone, from where the vertices are: mends faces that are turned over,
+/// nearly degenerate, or pass through others.
+void mend(Extraction& extraction, const Mesh& surface, const VertexFaces& around_surface,
+          const Graph& graph, const SmoothOptions& options, const Context& context);
+
 }  // namespace meshgrain

@@ -41,10 +41,11 @@ class Closing {
         around_surface_(around_surface),
         graph_(graph),
         smoothing_(std::move(smoothing)),
+        corners_stay_(smoothing_.corners_stay),
         context_(context) {
     smoothing_.iterations = iterations;
     smoothing_.is_part = true;
-    smoothing_.corners_stay = true;
+    smoothing_.creases_stay = smoothing_.corners_stay = true;
   }
 
   void run(std::size_t most) {
@@ -53,6 +54,7 @@ class Closing {
     tries_left_ = tries + count / faces_a_try;
     while (gone() < most && close_one(most - gone())) {
     }
+    let_lines_go();
     if (any_changed_) drop_unused(whole_);
   }
 
@@ -92,6 +94,51 @@ class Closing {
       }
     }
     return false;
+  }
+
+  /// Where nothing else helps, vertices may leave the lines and corners that hold them.
+  void let_lines_go() {
+    smoothing_.creases_stay = false;
+    smoothing_.corners_stay = corners_stay_;
+    tries_left_ = tries;
+    seen_.clear();
+    for (bool again = true; again;) {
+      again = false;
+      const VertexFaces around = vertex_faces(whole_.mesh, context_);
+      for (const Index f : bad_quads()) {
+        if (tries_left_-- == 0) return;
+        seen_.insert(corners(f));
+        again = std::ranges::any_of(pieces, [&](const auto& size) {
+          return let_lines_go(cut_piece(whole_, around, f, size.rings));
+        });
+        if (again) break;
+      }
+    }
+  }
+
+  bool let_lines_go(const Piece& piece) {
+    Extraction changed = piece.extraction;
+    mend(changed, surface_, around_surface_, graph_, smoothing_, context_);
+    if (lack(changed) >= lack(piece.extraction)) return false;
+    std::vector<Index> sources(changed.mesh.positions.size(), no_index);
+    for (Index v = 0; v < sources.size(); ++v) {
+      if (piece.on_rim[v]) sources[v] = v;
+    }
+    return keep_if_apart(piece, changed, sources);
+  }
+
+  /// Puts a changed piece in its place, unless more faces pass through each other then.
+  bool keep_if_apart(const Piece& piece, const Extraction& changed,
+                     const std::vector<Index>& sources) {
+    Extraction result = put_back(whole_, piece, changed, sources);
+    const Eigen::AlignedBox3f box = box_of(piece.extraction).merged(box_of(changed));
+    const auto crossings = [&](const Extraction& extraction) {
+      return count_crossings(extraction.mesh, box, context_);
+    };
+    if (crossings(result) > crossings(whole_)) return false;
+    whole_ = std::move(result);
+    any_changed_ = true;
+    return true;
   }
 
   /// How much is wrong with the faces of a piece.
@@ -183,15 +230,7 @@ class Closing {
         const Index source = parts.sources[v];
         if (vertex[v] != no_index && piece.on_rim[source]) sources[vertex[v]] = source;
       }
-      Extraction result = put_back(whole_, piece, changed, sources);
-      const Eigen::AlignedBox3f box = box_of(piece.extraction).merged(box_of(changed));
-      const auto crossings = [&](const Extraction& extraction) {
-        return count_crossings(extraction.mesh, box, context_);
-      };
-      if (crossings(result) > crossings(whole_)) continue;
-      whole_ = std::move(result);
-      any_changed_ = true;
-      return true;
+      if (keep_if_apart(piece, changed, sources)) return true;
     }
     return false;
   }
@@ -215,6 +254,7 @@ class Closing {
   const VertexFaces& around_surface_;
   const Graph& graph_;
   SmoothOptions smoothing_;
+  const bool corners_stay_;  // in the end, too
   const Context& context_;
   std::size_t tries_left_ = 0;
   bool any_changed_ = false;

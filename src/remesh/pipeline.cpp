@@ -443,6 +443,8 @@ void Pipeline::smooth_faces() {
     if (!lengths.uniform() && nodes_are_vertices_) smoothing.relative_size = lengths;
     smoothing.fit = options_.sizing.adaptive;
     smoothing.corners_stay = !borders_.empty();
+    // Quads at lines are mended by close_bad_quads() first.
+    smoothing.creases_stay = posy_of(options_.faces) == 4;
     if (!is_cloud_ && nodes_are_vertices_) smoothing.features = &features_;
     smooth(extraction_, surface_, around_, graph(), smoothing, context_);
     // What is bad beside vertices that cannot move shows only now.
