@@ -66,6 +66,7 @@ void make_mesh(Pipeline& pipeline) {
   pipeline.smooth_faces();
   pipeline.untwist_faces();
   pipeline.try_coarser_lattice();
+  pipeline.try_less_regular();
   pipeline.note_scraps();
   pipeline.report_fields();
 }

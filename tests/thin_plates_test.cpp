@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "finish/crossings.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/statistics.h"
 #include "meshgrain/triangulate.h"
@@ -74,6 +76,25 @@ TEST(ThinPlates, HaveARowOfFacesOnTheirRimsAndAllCorners) {
       EXPECT_LE(after.irregular_vertices, 60u);
     }
   }
+}
+
+/// Cancelling all that it may bends the grid between the creases until faces turn over.
+TEST(ThinPlates, RegularityYieldsToSoundFaces) {
+  std::size_t yielding = 0;
+  for (const auto& [thickness, count] : {std::pair(0.5f, 300), std::pair(0.4f, 700)}) {
+    const Mesh plate = heat_sink(5, thickness);
+    SCOPED_TRACE(std::to_string(thickness) + " " + std::to_string(count));
+    RemeshOptions options;
+    options.face_count = static_cast<std::size_t>(count);
+    options.regularity = 1;
+    const RemeshResult result = remesh(plate, options);
+    EXPECT_EQ(mesh_statistics(result.mesh).inverted_quads, 0u);
+    EXPECT_TRUE(find_crossings(result.mesh, Context()).empty());
+    yielding += std::ranges::any_of(result.report.notes, [](const std::string& note) {
+      return note.starts_with("less regular");
+    });
+  }
+  EXPECT_GT(yielding, 0u);
 }
 
 }  // namespace

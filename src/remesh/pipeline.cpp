@@ -60,7 +60,8 @@ Pipeline::Pipeline(const Mesh& input, const RemeshOptions& options, const Contex
       stage_(context, result_.report.stages),
       is_cloud_(input.is_point_cloud()),
       nodes_are_vertices_(is_cloud_ || options.graph.nodes == GraphNodes::vertices),
-      wanted_(options) {
+      wanted_(options),
+      regularity_(options.regularity) {
   result_.report.input_vertices = input.positions.size();
   result_.report.input_faces = input.faces.size();
   if (options.lock_borders && is_cloud_) {
@@ -194,8 +195,7 @@ bool Pipeline::has_quads_alone() const {
 double Pipeline::surplus() const {
   const bool guided =
       std::ranges::any_of(options_.guides, [](const Guide& guide) { return guide.strength > 0; });
-  const bool harmless =
-      lengths_.uniform() && !guided && borders_.empty() && options_.regularity < 1;
+  const bool harmless = lengths_.uniform() && !guided && borders_.empty() && regularity_ < 1;
   return harmless ? target_.surplus() : target_.tolerance();
 }
 
@@ -435,7 +435,7 @@ void Pipeline::smooth_faces() {
     // The more regular, the more the grid must stretch. Triangles of one size are regular; the
     // triangles among quads are smaller than these.
     if (options_.faces == OutputFaces::quads) {
-      smoothing.evenness = 0.61 + 0.12 * options_.regularity;
+      smoothing.evenness = 0.61 + 0.12 * regularity_;
     }
     if (options_.faces == OutputFaces::triangles) smoothing.evenness = 0.8;
     if (options_.faces == OutputFaces::quad_dominant) smoothing.evenness = 0.48;
@@ -458,31 +458,56 @@ void Pipeline::smooth_faces() {
   });
 }
 
+std::size_t Pipeline::inverted_faces() const {
+  return mesh_statistics(extraction_.mesh).inverted_quads;
+}
+
+std::size_t Pipeline::faults() const {
+  return inverted_faces() + find_crossings(extraction_.mesh, context_).size();
+}
+
 void Pipeline::try_coarser_lattice() {
   if (lattice_faces_ == options_.faces) return;
-  const auto inverted = [&] { return mesh_statistics(extraction_.mesh).inverted_quads; };
   constexpr double hopeless = 0.2;
-  if (inverted() == 0 || share_of_holes() > hopeless) return;
-  const auto faults = [&] {
-    return inverted() + find_crossings(extraction_.mesh, context_).size();
-  };
+  if (inverted_faces() == 0 || share_of_holes() > hopeless) return;
   const std::size_t before = faults();
-  Extraction finer = std::exchange(extraction_, {});
+  aim_at(options_.faces);
+  try_again(before);
+}
+
+void Pipeline::try_less_regular() {
+  const double moderate = RemeshOptions().regularity;
+  if (is_cloud_ || options_.smoothing == 0 || regularity_ <= moderate) return;
+  const std::size_t before = faults();
+  if (before == 0) return;
+  for (const double share : {0.5, 0.0}) {
+    regularity_ = moderate + share * (options_.regularity - moderate);
+    // Where the input passes through itself there are always some.
+    if (!try_again(before / 2)) continue;
+    result_.report.notes.push_back(
+        "less regular than was asked for: faces would be inverted or pass through each other");
+    break;
+  }
+  regularity_ = options_.regularity;
+}
+
+bool Pipeline::try_again(std::size_t most_faults) {
+  Extraction before = std::exchange(extraction_, {});
   PositionField positions = std::exchange(fields().position, {});
   auto energies = std::exchange(result_.report.position_energies, {});
   is_split_ = false;
-  aim_at(options_.faces);
   complete_levels();
   size_faces();
   find_faces();
   if (!extraction_.mesh.faces.empty()) {
     smooth_faces();
     untwist_faces();
-    if (faults() < before) return;
+    if (faults() < most_faults) return true;
   }
-  extraction_ = std::move(finer);
+  extraction_ = std::move(before);
   fields().position = std::move(positions);
   result_.report.position_energies = std::move(energies);
+  return false;
 }
 
 void Pipeline::untwist_faces() {
@@ -573,7 +598,7 @@ double Pipeline::cancelling_cost(double regularity) const {
                         : lattice_faces_ == OutputFaces::quad_dominant ? 14.3
                                                                        : 11.2;
   // Dearer ways crumple the grid, and mending it takes as many irregular vertices as they save.
-  constexpr double least = 0.28, most = 5.5;  // of that
+  constexpr double least = 0.28, most = 4;  // of that
   const double growing = least + (1 - least) * regularity / std::max(1 - regularity, 1e-9);
   return middle * std::min(growing, most);
 }
@@ -583,8 +608,8 @@ Extraction Pipeline::extract(const PositionField& positions) {
   extract.energy = options_.position_energy;
   extract.manifold = options_.manifold;
   // Sizes that vary need the dislocations where rows end.
-  extract.cancelling_cost_where_graded = cancelling_cost(options_.regularity / 5);
-  extract.cancelling_cost = options_.sizing.is_uniform() ? cancelling_cost(options_.regularity)
+  extract.cancelling_cost_where_graded = cancelling_cost(regularity_ / 5);
+  extract.cancelling_cost = options_.sizing.is_uniform() ? cancelling_cost(regularity_)
                                                          : extract.cancelling_cost_where_graded;
   if (is_cloud_) {
     extract.largest_filled_gap = 12;  // a larger one may well be a hole

@@ -59,6 +59,9 @@ class Pipeline {
   /// Where refine_for_details() leaves inverted quads all the same, what there would be without it:
   /// that is kept if it has fewer of these and of crossings together.
   void try_coarser_lattice();
+  /// Where the utmost regularity bends the grid into faults, what there is with as much as by
+  /// default: that is kept if it has less than half as many.
+  void try_less_regular();
 
   /// If there are many pieces smaller than a face.
   void note_scraps();
@@ -89,6 +92,13 @@ class Pipeline {
   template <typename Change>
   bool change_quads(Extraction& extraction, const Change& change);
   void drop_pieces();
+
+  std::size_t inverted_faces() const;
+  /// Inverted faces, and pairs that pass through each other.
+  std::size_t faults() const;
+  /// Makes the faces once more, as all is now, and keeps what was before unless there are fewer
+  /// faults. Returns whether there are.
+  bool try_again(std::size_t faults);
 
   /// position_and_extract(), but there may be no faces.
   void find_faces();
@@ -151,6 +161,7 @@ class Pipeline {
   OutputFaces lattice_faces_ = OutputFaces::quads;
   bool has_thin_limbs_ = false;     // for its faces, see is_coarse_for_bends()
   RemeshOptions wanted_;            // what the target goes by
+  double regularity_;               // that is aimed at
   std::size_t clean_vertices_ = 0;  // of the input, without what clean_up() takes out
   bool is_sharpened_ = false;
   bool is_coarsened_ = false;  // its creases are marked since then, and
