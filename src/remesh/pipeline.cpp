@@ -478,8 +478,9 @@ void Pipeline::try_coarser_lattice() {
 void Pipeline::try_less_regular() {
   const double moderate = RemeshOptions().regularity;
   if (is_cloud_ || options_.smoothing == 0 || regularity_ <= moderate) return;
+  constexpr std::size_t hopeless = 20;  // one in so many faces
   const std::size_t before = faults();
-  if (before == 0) return;
+  if (before == 0 || before > extraction_.mesh.faces.size() / hopeless) return;
   for (const double share : {0.5, 0.0}) {
     regularity_ = moderate + share * (options_.regularity - moderate);
     // Where the input passes through itself there are always some.
