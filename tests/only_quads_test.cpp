@@ -48,7 +48,7 @@ Extraction without_lines(Mesh mesh) {
 Extraction paired(const Extraction& extraction) {
   ExtractionMap parts(extraction, Context());
   FaceRepair repair(parts.map, parts.clusters, 4, std::move(parts.holes), std::move(parts.lines));
-  pair_odd_faces(parts.map, repair);
+  pair_odd_faces(parts.map, repair, Context());
   std::vector<Index> vertex;
   return collect_faces(parts.map, repair, parts.clusters, vertex, Context());
 }

@@ -173,7 +173,7 @@ Extraction extract_from_mesh(const Graph& graph, const OrientationField& orienta
   repair.part_straight_angles();
   make_regular(repair, position.posy, context);
   if (options.only_quads) {
-    pair_odd_faces(lattice.map, repair);
+    pair_odd_faces(lattice.map, repair, context);
     make_regular(repair, position.posy, context);
   }
   std::vector<Index> vertex;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <queue>
+#include <utility>
 #include <vector>
 
 #include "extract/cheapest_pairs.h"
@@ -24,7 +25,8 @@ constexpr double of_bare_vertex = 20;     // see needs_edge()
 
 class OddFaces {
  public:
-  OddFaces(PolygonMap& map, FaceRepair& repair) : map_(map), repair_(repair) {}
+  OddFaces(PolygonMap& map, FaceRepair& repair, const Context& context)
+      : map_(map), repair_(repair), context_(context) {}
 
   void run();
 
@@ -34,6 +36,14 @@ class OddFaces {
     Index into;    // the halfedge by which a face was reached
     Index before;  // that of the face from which it was, or no_index
     auto operator<=>(const Step&) const = default;
+  };
+
+  /// What searches one after the other remember.
+  struct Reached {
+    // Of each halfedge: in which search a face was reached by it, and by which one that before.
+    std::vector<std::uint32_t> search;
+    std::vector<Index> before;
+    std::uint32_t searches = 0;
   };
 
   /// The lowest of the halfedges around a face stands for it.
@@ -51,19 +61,17 @@ class OddFaces {
   bool vanishes(Index h) const;
   double crossing_cost(Index entry, Index exit) const;
   template <typename Found>
-  void search(Index from, const Found& found);
-  std::vector<std::vector<Match>> matches();
+  void search(Index from, Reached& reached, const Found& found) const;
+  std::vector<std::vector<Match>> matches() const;
   void join(Index from, Index to);
   bool contract_end(Index end);
   bool take_end(Index end, Index turned_to);
 
   PolygonMap& map_;
   FaceRepair& repair_;
+  const Context& context_;
   std::vector<Index> faces_;  // those with an odd number of corners, by some halfedge
-  // Of each halfedge: in which search a face was reached by it, and by which one that before.
-  std::vector<std::uint32_t> reached_;
-  std::vector<Index> before_;
-  std::uint32_t searches_ = 0;
+  Reached reached_;
 };
 
 /// And finds the others.
@@ -139,14 +147,14 @@ double OddFaces::crossing_cost(Index entry, Index exit) const {
 /// Visits halfedges by which faces can be reached from one, in the order of what the way costs
 /// (Dijkstra). Calls found(step) where the face is odd or outside, until it returns true.
 template <typename Found>
-void OddFaces::search(Index from, const Found& found) {
-  reached_.resize(map_.halfedges(), 0);
-  before_.resize(map_.halfedges());
-  ++searches_;
+void OddFaces::search(Index from, Reached& reached, const Found& found) const {
+  reached.search.resize(map_.halfedges(), 0);
+  reached.before.resize(map_.halfedges());
+  const std::uint32_t now = ++reached.searches;
   std::priority_queue<Step, std::vector<Step>, std::greater<>> open;
   const auto leave = [&](double cost, Index entry, Index exit) {
     const Index into = PolygonMap::twin(exit);
-    if (reached_[into] == searches_) return;
+    if (reached.search[into] == now) return;
     open.push({cost + crossing_cost(entry, exit), into, entry});
   };
   std::vector<Index> around;
@@ -155,9 +163,8 @@ void OddFaces::search(Index from, const Found& found) {
   while (!open.empty()) {
     const Step step = open.top();
     open.pop();
-    if (reached_[step.into] == searches_) continue;
-    reached_[step.into] = searches_;
-    before_[step.into] = step.before;
+    if (std::exchange(reached.search[step.into], now) == now) continue;
+    reached.before[step.into] = step.before;
     if (repair_.is_hole(step.into) || is_odd(step.into)) {
       if (found(step)) return;
       continue;
@@ -169,13 +176,13 @@ void OddFaces::search(Index from, const Found& found) {
 }
 
 /// Of each odd face, the others that are near, or the border.
-std::vector<std::vector<Match>> OddFaces::matches() {
-  constexpr std::size_t enough = 16;
+std::vector<std::vector<Match>> OddFaces::matches() const {
+  constexpr std::size_t enough = 16, grain = 2;
   std::vector<std::vector<Match>> result(faces_.size());
   std::vector<Index> number(map_.halfedges(), no_index);
   for (Index i = 0; i < faces_.size(); ++i) number[face_of(faces_[i])] = i;
-  for (Index i = 0; i < faces_.size(); ++i) {
-    search(faces_[i], [&](const Step& step) {
+  const auto look = [&](Index i, Reached& reached) {
+    search(faces_[i], reached, [&](const Step& step) {
       const bool outside = repair_.is_hole(step.into);
       const Index with = outside ? Match::nobody : number[face_of(step.into)];
       if (with != i && std::ranges::find(result[i], with, &Match::with) == result[i].end()) {
@@ -183,7 +190,11 @@ std::vector<std::vector<Match>> OddFaces::matches() {
       }
       return outside || result[i].size() == enough;
     });
-  }
+  };
+  context_.for_ranges(faces_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    Reached reached;
+    for (auto i = static_cast<Index>(begin); i < end; ++i) look(i, reached);
+  });
   return result;
 }
 
@@ -191,10 +202,10 @@ std::vector<std::vector<Match>> OddFaces::matches() {
 void OddFaces::join(Index from, Index to) {
   const bool to_border = to == Match::nobody;
   std::vector<Index> exits;  // from the last one on
-  search(from, [&](const Step& step) {
+  search(from, reached_, [&](const Step& step) {
     const bool outside = repair_.is_hole(step.into);
     if (outside != to_border || (!outside && face_of(step.into) != face_of(to))) return false;
-    for (Index entry = step.into; entry != no_index; entry = before_[entry]) {
+    for (Index entry = step.into; entry != no_index; entry = reached_.before[entry]) {
       exits.push_back(PolygonMap::twin(entry));
     }
     return true;
@@ -273,8 +284,8 @@ void OddFaces::run() {
 
 }  // namespace
 
-void pair_odd_faces(PolygonMap& map, FaceRepair& repair) {
-  OddFaces(map, repair).run();
+void pair_odd_faces(PolygonMap& map, FaceRepair& repair, const Context& context) {
+  OddFaces(map, repair, context).run();
 }
 
 }  // namespace meshgrain
