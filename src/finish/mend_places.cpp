@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -78,6 +79,14 @@ class Mending {
   static constexpr std::size_t most_searched = 20000;  // faces of the surface in a place
   static constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
 
+  /// To look at a place once. Large ones, where a mesh is crumpled, have few faces that are not
+  /// compared with each other.
+  static double steps_to_look_at(const Place& place) {
+    constexpr double large = 150;
+    const auto faces = static_cast<double>(place.faces.size());
+    return faces * std::max(1.0, std::pow(faces / large, 2));
+  }
+
   double effort() const {
     return options_.is_part
                ? effort_for_a_part
@@ -109,12 +118,14 @@ class Mending {
     for (const auto& [f, g] : crossings) {
       if (inherent[f] || inherent[g] || std::min(failed[f], failed[g]) >= tries) continue;
       if (penetration(mesh_, f, g) == 0) continue;
+      if (effort_left_ <= 0) return false;
       Place place = around(f, g, rings);
-      if (surface_crosses(place)) {
+      effort_left_ -= steps_to_look_at(place);
+      if (is_hopeless(place) || surface_crosses(place)) {
         inherent[f] = inherent[g] = 1;
         continue;
       }
-      if (++tried > most_tried || effort_left_ <= 0) return false;
+      if (++tried > most_tried) return false;
       --place.crossings;
       if (part(place)) continue;
       restore(place);
@@ -130,6 +141,11 @@ class Mending {
       if (failed[f] >= tries_to_reshape || !is_bad(f)) continue;
       if (++tried > std::max(most_tried, mesh_.faces.size() / 100) || effort_left_ <= 0) break;
       Place place = around(f, f, rings);
+      effort_left_ -= steps_to_look_at(place);
+      if (is_hopeless(place)) {
+        for (const Index h : place.faces) ++failed[h];
+        continue;
+      }
       --place.bad;
       // What could not be parted must not keep faces turned inside out as well.
       const bool is_last = demands_.quality <= 0;
@@ -173,9 +189,16 @@ class Mending {
     }
     sort_unique(place.at_bad);
     place.poor = count_short(place, not_poor, all);
-    place.crossings = count_crossings(place, all);
+    place.crossings = count_crossings(place, most_crossings(place));
     return place;
   }
+
+  /// That anything can be done about.
+  static std::size_t most_crossings(const Place& place) {
+    constexpr std::size_t hopeless = 10;  // for each face
+    return hopeless * place.faces.size();
+  }
+  bool is_hopeless(const Place& place) const { return place.crossings >= most_crossings(place); }
 
   std::size_t count_crossings(const Place& place, std::size_t limit) const {
     std::vector<Eigen::AlignedBox3f> boxes;
@@ -294,7 +317,7 @@ class Mending {
       where.push_back(k);
     }
     for (int step = 0; step < steps && !is_mended(place); ++step) {
-      effort_left_ -= static_cast<double>(place.faces.size());
+      effort_left_ -= steps_to_look_at(place);
       std::vector<LocalSearch::Place> next;
       for (std::size_t i = 0; i < leaving.size(); ++i) {
         const auto& [start, seed] = place.before[where[i]];

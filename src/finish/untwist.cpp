@@ -24,13 +24,12 @@ class Untwisting {
 
   void run() {
     std::vector<Index> twisted = twisted_quads();
-    if (twisted.empty()) return;
+    if (twisted.empty() || is_hopeless(twisted.size())) return;
     around_ = vertex_faces(mesh_, context_);
     start_ = mesh_.positions;
     hold();
     for (const std::size_t price : prices) {
       for (const int rings : {2, 3, 5}) {
-        // A mesh with more of them is too coarse for its surface: no need to try for minutes.
         const std::size_t most = 50 + mesh_.faces.size() / 100;
         twisted.resize(std::min(twisted.size(), most));
         for (const Index f : twisted) mend(f, rings, price);
@@ -43,6 +42,14 @@ class Untwisting {
  private:
   /// How many more crossings may come of each quad that is mended.
   static constexpr std::size_t prices[] = {0, 10, 1000};
+
+  /// A mesh with more of them is too coarse for its surface: no need to try for minutes.
+  bool is_hopeless(std::size_t twisted) const {
+    constexpr std::size_t least_share = 5, most_crossings = 10;
+    const std::size_t faces = mesh_.faces.size();
+    return twisted > faces / least_share ||
+           find_crossings(mesh_, context_).size() > most_crossings * faces;
+  }
 
   enum Stay : std::uint8_t { nowhere, on_line, always };
 

@@ -50,6 +50,8 @@ class Closing {
 
   void run(std::size_t most) {
     const std::size_t count = whole_.mesh.faces.size();
+    constexpr std::size_t hopeless = 5;  // one in so many
+    if (bad_quads().size() > count / hopeless) return;
     const auto gone = [&] { return count - whole_.mesh.faces.size(); };
     tries_left_ = tries + count / faces_a_try;
     while (gone() < most && close_one(most - gone())) {
