@@ -54,7 +54,7 @@ std::size_t count_lost(const Mesh& mesh, const Mesh& among, float far) {
   }));
 }
 
-/// From a fifth of a face's side on, which would leave no room in the lattice, to a whole one.
+/// From a quarter of a face's side on, which would leave no room in the lattice, to a whole one.
 TEST(ThinPlates, HaveARowOfFacesOnTheirRimsAndAllCorners) {
   constexpr int plates = 3;
   constexpr std::size_t count = 700;

@@ -153,6 +153,7 @@ class FaceRepair {
   /// Whether a face between two edges of feature lines, that leave the origin of `to` and come from
   /// `from`, has a straight angle there. `normal` is that of the face.
   bool is_straight(Index to, Index from, const Vec3& normal) const;
+  /// The same at a vertex between two others of a face.
   bool is_straight(Index v, Index ahead, Index back, const Vec3& normal) const;
   Vec3 face_normal(Index h) const;
   /// Whether a face of that normal looks away from the surface at one of its vertices.

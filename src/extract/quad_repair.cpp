@@ -95,10 +95,10 @@ std::vector<Index> FaceRepair::union_halfedges(Index h) const {
 }
 
 bool FaceRepair::leaves_straight_angle(const std::vector<Index>& around, int from, int to) const {
+  if (!stays(map_.origin(around[from])) || !stays(map_.origin(around[to]))) return false;
   const auto n = static_cast<int>(around.size());
   for (int turn = 0; turn < 2; ++turn, std::swap(from, to)) {  // the faces on both sides
     const Index a = map_.origin(around[from]), b = map_.origin(around[to]);
-    if (!stays(a) || !stays(b)) return false;
     Vec3 normal = Vec3::Zero();
     for (int k = from; k != to; k = (k + 1) % n) {
       const Vec3& base = clusters_.positions[a];

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "meshgrain/context.h"
@@ -23,5 +24,9 @@ std::vector<std::array<Index, 2>> find_crossings(const Mesh& mesh, const Context
 /// How many there are of them between the faces whose boxes meet this one.
 std::size_t count_crossings(const Mesh& mesh, const Eigen::AlignedBox3f& box,
                             const Context& context);
+
+/// Where there are so many for each face, a mesh is crumpled: far fewer faces were asked for than
+/// its topology needs, and nothing can be done about them.
+inline constexpr std::size_t hopeless_crossings = 10;
 
 }  // namespace meshgrain

@@ -195,8 +195,7 @@ class Mending {
 
   /// That anything can be done about.
   static std::size_t most_crossings(const Place& place) {
-    constexpr std::size_t hopeless = 10;  // for each face
-    return hopeless * place.faces.size();
+    return hopeless_crossings * place.faces.size();
   }
   bool is_hopeless(const Place& place) const { return place.crossings >= most_crossings(place); }
 

@@ -30,6 +30,7 @@ class Untwisting {
     hold();
     for (const std::size_t price : prices) {
       for (const int rings : {2, 3, 5}) {
+        // A mesh with more of them is too coarse for its surface: no need to try for minutes.
         const std::size_t most = 50 + mesh_.faces.size() / 100;
         twisted.resize(std::min(twisted.size(), most));
         for (const Index f : twisted) mend(f, rings, price);
@@ -43,12 +44,12 @@ class Untwisting {
   /// How many more crossings may come of each quad that is mended.
   static constexpr std::size_t prices[] = {0, 10, 1000};
 
-  /// A mesh with more of them is too coarse for its surface: no need to try for minutes.
+  /// Whether the mesh is crumpled all over.
   bool is_hopeless(std::size_t twisted) const {
-    constexpr std::size_t least_share = 5, most_crossings = 10;
+    constexpr std::size_t one_in = 5;
     const std::size_t faces = mesh_.faces.size();
-    return twisted > faces / least_share ||
-           find_crossings(mesh_, context_).size() > most_crossings * faces;
+    return twisted > faces / one_in ||
+           find_crossings(mesh_, context_).size() > hopeless_crossings * faces;
   }
 
   enum Stay : std::uint8_t { nowhere, on_line, always };

@@ -49,9 +49,9 @@ class Closing {
   }
 
   void run(std::size_t most) {
-    const std::size_t count = whole_.mesh.faces.size();
+    const std::size_t count = whole_.mesh.faces.size(), bad = bad_quads().size();
     constexpr std::size_t hopeless = 5;  // one in so many
-    if (bad_quads().size() > count / hopeless) return;
+    if (bad == 0 || bad > count / hopeless) return;
     const auto gone = [&] { return count - whole_.mesh.faces.size(); };
     tries_left_ = tries + count / faces_a_try;
     while (gone() < most && close_one(most - gone())) {
@@ -104,21 +104,27 @@ class Closing {
     smoothing_.corners_stay = corners_stay_;
     tries_left_ = tries;
     seen_.clear();
-    for (bool again = true; again;) {
-      again = false;
-      const VertexFaces around = vertex_faces(whole_.mesh, context_);
-      for (const Index f : bad_quads()) {
-        if (tries_left_-- == 0) return;
-        seen_.insert(corners(f));
-        again = std::ranges::any_of(pieces, [&](const auto& size) {
-          return let_lines_go(cut_piece(whole_, around, f, size.rings));
-        });
-        if (again) break;
-      }
+    while (let_go_at_one()) {
     }
   }
 
-  bool let_lines_go(const Piece& piece) {
+  /// At the worst quad where it helps. Returns whether there was one.
+  bool let_go_at_one() {
+    const std::vector<Index> bad = bad_quads();
+    if (bad.empty()) return false;
+    const VertexFaces around = vertex_faces(whole_.mesh, context_);
+    for (const Index f : bad) {
+      if (tries_left_ == 0) return false;
+      --tries_left_;
+      seen_.insert(corners(f));
+      for (const auto& [rings, ways] : pieces) {
+        if (let_go_in(cut_piece(whole_, around, f, rings))) return true;
+      }
+    }
+    return false;
+  }
+
+  bool let_go_in(const Piece& piece) {
     Extraction changed = piece.extraction;
     mend(changed, surface_, around_surface_, graph_, smoothing_, context_);
     if (lack(changed) >= lack(piece.extraction)) return false;

@@ -492,7 +492,7 @@ void Pipeline::try_less_regular() {
   regularity_ = options_.regularity;
 }
 
-bool Pipeline::try_again(std::size_t most_faults) {
+bool Pipeline::try_again(std::size_t too_many) {
   Extraction before = std::exchange(extraction_, {});
   PositionField positions = std::exchange(fields().position, {});
   auto energies = std::exchange(result_.report.position_energies, {});
@@ -503,7 +503,7 @@ bool Pipeline::try_again(std::size_t most_faults) {
   if (!extraction_.mesh.faces.empty()) {
     smooth_faces();
     untwist_faces();
-    if (faults() < most_faults) return true;
+    if (faults() < too_many) return true;
   }
   extraction_ = std::move(before);
   fields().position = std::move(positions);

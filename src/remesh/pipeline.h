@@ -59,8 +59,8 @@ class Pipeline {
   /// Where refine_for_details() leaves inverted quads all the same, what there would be without it:
   /// that is kept if it has fewer of these and of crossings together.
   void try_coarser_lattice();
-  /// Where the utmost regularity bends the grid into faults, what there is with as much as by
-  /// default: that is kept if it has less than half as many.
+  /// Where more regularity than by default bends the grid into faults, what there is with half of
+  /// the excess, or none: the first is kept that has less than half as many.
   void try_less_regular();
 
   /// If there are many pieces smaller than a face.
@@ -96,9 +96,9 @@ class Pipeline {
   std::size_t inverted_faces() const;
   /// Inverted faces, and pairs that pass through each other.
   std::size_t faults() const;
-  /// Makes the faces once more, as all is now, and keeps what was before unless there are fewer
-  /// faults. Returns whether there are.
-  bool try_again(std::size_t faults);
+  /// Makes the faces once more, as all is now. Keeps what was before, and returns false, unless
+  /// there are fewer faults than `too_many`.
+  bool try_again(std::size_t too_many);
 
   /// position_and_extract(), but there may be no faces.
   void find_faces();
