@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "kept_creases.h"
+#include "made_points.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
 #include "meshgrain/statistics.h"
@@ -78,6 +79,28 @@ TEST(Denoise, AllElseStaysAsItIs) {
   }
   Mesh part = sample_shape("bracket");
   EXPECT_FALSE(sharpen_noisy_part(part, output_edge(part, 2000), Context()));
+}
+
+/// Few sides around a tube meet at angles that noise has, too.
+TEST(Denoise, CoarseTubesStayAsTheyAre) {
+  constexpr std::size_t rings = 12, around = 48, across = 16;
+  const made::Sample ring = made::torus(around, across, 1, 0.18);
+  Mesh chain;
+  for (std::size_t k = 0; k < rings; ++k) {
+    for (const Vec3& p : ring.points) {
+      chain.positions.push_back(p + Vec3(3 * static_cast<float>(k), 0, 0));
+    }
+    const auto at = [&](std::size_t i, std::size_t j) {
+      return static_cast<Index>((k * around + i % around) * across + j % across);
+    };
+    for (std::size_t i = 0; i < around; ++i) {
+      for (std::size_t j = 0; j < across; ++j) {
+        chain.faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+        chain.faces.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+      }
+    }
+  }
+  EXPECT_FALSE(sharpen_noisy_part(chain, output_edge(chain, 3000), Context()));
 }
 
 TEST(Denoise, SymmetryComesAfterIt) {
