@@ -11,7 +11,6 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <mutex>
 #include <span>
@@ -22,6 +21,7 @@
 #include "io/coordinates.h"
 #include "io/formats.h"
 #include "io/paint.h"
+#include "io/ply_body.h"
 #include "io/ply_header.h"
 #include "io/range_grid.h"
 #include "io/text.h"
@@ -29,99 +29,13 @@
 namespace meshgrain::io {
 namespace {
 
+using ply::BinaryBody;
 using ply::Element;
 using ply::Encoding;
 using ply::Header;
 using ply::Property;
+using ply::TextBody;
 using ply::Type;
-
-/// The numbers of a text file, one after the other; line breaks mean nothing.
-class TextBody {
- public:
-  TextBody(const Input& input, Text& text) : input_(input), text_(text) {}
-
-  static constexpr std::size_t least_bytes(Type) { return 2; }
-  const char* at() const { return text_.at(); }
-  std::size_t left() const { return static_cast<std::size_t>(input_.end() - at()); }
-
-  double number(Type, const Item& item) {
-    const double value = text_.number(item, "a number");
-    last_ = text_.at();
-    return value;
-  }
-  void skip(Type, std::uint64_t count, const Item& item) {
-    for (std::uint64_t i = 0; i < count; ++i) {
-      if (text_.file_ends()) text_.fail("the file ends within " + item.text());
-      text_.word();
-    }
-  }
-  [[noreturn]] void fail_at_last(Type, const std::string& what) const { text_.fail(last_, what); }
-  [[noreturn]] void fail_at_end(const Item& item) const {
-    text_.fail(input_.end(), "the file ends within " + item.text());
-  }
-
- private:
-  const Input& input_;
-  Text& text_;
-  const char* last_ = nullptr;  // behind the last number
-};
-
-/// The numbers of a binary file.
-template <std::endian order>
-class BinaryBody {
- public:
-  BinaryBody(const Input& input, const char* begin) : input_(input), at_(begin) {}
-
-  static constexpr std::size_t least_bytes(Type type) { return size_of(type); }
-  const char* at() const { return at_; }
-  std::size_t left() const { return static_cast<std::size_t>(input_.end() - at_); }
-
-  template <class T>
-  T load(const char* at) const {
-    std::array<char, sizeof(T)> bytes;
-    std::memcpy(bytes.data(), at, sizeof(T));
-    if constexpr (order != std::endian::native) std::reverse(bytes.begin(), bytes.end());
-    return std::bit_cast<T>(bytes);
-  }
-  double number(Type type, const Item& item) {
-    if (left() < size_of(type)) fail_at_end(item);
-    const char* const at = std::exchange(at_, at_ + size_of(type));
-    switch (type) {
-      case Type::i8:
-        return load<std::int8_t>(at);
-      case Type::u8:
-        return load<std::uint8_t>(at);
-      case Type::i16:
-        return load<std::int16_t>(at);
-      case Type::u16:
-        return load<std::uint16_t>(at);
-      case Type::i32:
-        return load<std::int32_t>(at);
-      case Type::u32:
-        return load<std::uint32_t>(at);
-      case Type::f32:
-        return load<float>(at);
-      case Type::f64:
-        break;
-    }
-    return load<double>(at);
-  }
-  void skip(Type type, std::uint64_t count, const Item& item) {
-    if (count > left() / size_of(type)) fail_at_end(item);
-    at_ += count * size_of(type);
-  }
-  void advance(std::size_t bytes) { at_ += bytes; }
-  [[noreturn]] void fail_at_last(Type type, const std::string& what) const {
-    input_.fail_at_byte(at_ - size_of(type), what);
-  }
-  [[noreturn]] void fail_at_end(const Item& item) const {
-    input_.fail_at_byte(input_.end(), "the file ends within " + item.text());
-  }
-
- private:
-  const Input& input_;
-  const char* at_;
-};
 
 /// Reads the elements in their order, from any kind of body.
 template <class Body>
@@ -536,10 +450,6 @@ Mesh read_ply(const Input& input) {
   return mesh;
 }
 
-void write_ply(Output& output, const Mesh& mesh) {
-  ply::write(output, mesh, {}, {});
-}
-
 namespace ply {
 
 Mesh read(const Input& input, std::span<Column> columns, std::vector<std::string>* comments) {
@@ -557,73 +467,6 @@ Mesh read(const Input& input, std::span<Column> columns, std::vector<std::string
   }
   return Reader(input, text, header, columns, BinaryBody<std::endian::big>(input, text.at()))
       .read();
-}
-
-void write(Output& output, const Mesh& mesh, std::span<const std::string> comments,
-           std::span<const Attribute> attributes) {
-  const bool shifted = !mesh.origin.isZero(0);
-  const bool normals = !mesh.normals.empty();
-  std::size_t highest_degree = mesh.faces.uniform_degree();
-  for (std::size_t f = 0; f < mesh.faces.size() && mesh.faces.uniform_degree() == 0; ++f) {
-    highest_degree = std::max(highest_degree, mesh.faces.degree(f));
-  }
-  const bool long_lists = highest_degree > std::numeric_limits<std::uint8_t>::max();
-  const bool large = mesh.positions.size() > std::numeric_limits<std::int32_t>::max();
-
-  output.print("ply\nformat binary_little_endian 1.0\ncomment written by Meshgrain\n");
-  for (const std::string& comment : comments) output.print("comment {}\n", comment);
-  output.print("element vertex {}\n", mesh.positions.size());
-  for (const char* name : {"x", "y", "z"}) {
-    output.print("property {} {}\n", shifted ? "double" : "float", name);
-  }
-  if (normals) output.write("property float nx\nproperty float ny\nproperty float nz\n");
-  for (const Attribute& attribute : attributes) {
-    output.print("property {} {}\n", attribute.offset != 0 ? "double" : "float", attribute.name);
-  }
-  if (!mesh.is_point_cloud()) {
-    output.print("element face {}\nproperty list {} {} vertex_indices\n", mesh.faces.size(),
-                 long_lists ? "uint" : "uchar", large ? "uint" : "int");
-  }
-  if (!mesh.marked_edges.empty()) {
-    const char* const type = large ? "uint" : "int";
-    output.print("element edge {}\nproperty {} vertex1\nproperty {} vertex2\n",
-                 mesh.marked_edges.size(), type, type);
-  }
-  output.write("end_header\n");
-
-  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    const Vec3& p = mesh.positions[v];
-    for (int i = 0; i < 3; ++i) {
-      if (shifted) {
-        output.put(static_cast<double>(p[i]) + mesh.origin[i]);
-      } else {
-        output.put(p[i]);
-      }
-    }
-    if (normals) {
-      for (const float n : mesh.normals[v]) output.put(n);
-    }
-    for (const Attribute& attribute : attributes) {
-      const float number = attribute.first[v * attribute.stride];
-      if (attribute.offset != 0) {
-        output.put(static_cast<double>(number) + attribute.offset);
-      } else {
-        output.put(number);
-      }
-    }
-  }
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    const std::span<const Index> face = mesh.faces[f];
-    if (long_lists) {
-      output.put(static_cast<std::uint32_t>(face.size()));
-    } else {
-      output.put(static_cast<std::uint8_t>(face.size()));
-    }
-    for (const Index v : face) output.put(v);
-  }
-  for (const auto& edge : mesh.marked_edges) {
-    for (const Index v : edge) output.put(v);
-  }
 }
 
 }  // namespace ply
