@@ -8,6 +8,7 @@
 #include <numbers>
 #include <set>
 
+#include "made_fields.h"
 #include "meshgrain/error.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
@@ -167,6 +168,38 @@ TEST(Symmetry, WhatIsNotSymmetricStaysWhole) {
   const RemeshResult result = remesh(mesh, options);
   EXPECT_EQ(result.mesh.positions, plain.positions);
   EXPECT_EQ(result.report.notes, std::vector<std::string>{"not symmetric across y"});
+}
+
+/// A flat mesh is its own mirror image in the plane that it lies in.
+TEST(Symmetry, WhatLiesInThePlaneStaysWhole) {
+  const Mesh mesh = made::grid(20, 20, false, false, [](double u, double v) {
+    return Vec3(2 * static_cast<float>(u), static_cast<float>(v), 0);
+  });
+  RemeshOptions options;
+  options.face_count = 500;
+  const Mesh plain = remesh(mesh, options).mesh;
+  options.symmetry.axes[2] = true;
+  EXPECT_EQ(remesh(mesh, options).mesh.positions, plain.positions);
+  options.symmetry.axes[0] = true;
+  const RemeshResult result = remesh(mesh, options);
+  expect_symmetric(result.mesh, 0);
+  EXPECT_EQ(result.report.notes, std::vector<std::string>{"made symmetric across x"});
+}
+
+/// A fin between both halves.
+TEST(Symmetry, TellsWhatIsLeftOutInThePlane) {
+  Mesh mesh = sample_shape("torus");
+  for (const Vec3& p : {Vec3(0, -3, -3), Vec3(0, 3, -3), Vec3(0, 0, -2)}) {
+    mesh.positions.push_back(p);
+  }
+  const auto last = static_cast<Index>(mesh.positions.size() - 1);
+  mesh.faces.push_back({last - 2, last - 1, last});
+  RemeshOptions options;
+  options.face_count = 500;
+  options.symmetry.axes[0] = true;
+  const std::vector<std::string> notes = remesh(mesh, options).report.notes;
+  EXPECT_EQ(notes, (std::vector<std::string>{"left out 1 faces in the mirror plane across x",
+                                             "made symmetric across x"}));
 }
 
 /// Where faces are to be small near a point, the point's mirror image does as well.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
@@ -27,8 +28,11 @@ struct MirrorPlane {
 MirrorPlane find_mirror_plane(const Mesh& mesh, int axis, const Context& context = Context());
 
 /// Moves Mesh::origin onto the plane (exactly along its axis), and cuts what lies below it off.
-/// Vertices hardly off the plane move onto it.
+/// Vertices hardly off the plane move onto it, and faces in it are dropped.
 void cut_at(Mesh& triangles, const MirrorPlane& plane);
+
+/// How many faces lie in a plane.
+std::size_t count_faces_in(const Mesh& mesh, const MirrorPlane& plane);
 
 /// Adds the mirror image about the plane through Mesh::origin across `axis`. Vertices of the border
 /// less than `near` from it move onto it, and belong to both halves.

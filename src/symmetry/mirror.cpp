@@ -89,16 +89,39 @@ void drop_crumbs(Mesh& mesh, UnionFind& whole, std::size_t vertices) {
   mesh.faces = std::move(kept);
 }
 
+/// Distances from a plane, which of vertices that are hardly off it are 0.
+class Heights {
+ public:
+  Heights(const Mesh& mesh, const MirrorPlane& plane)
+      : plane_(plane), tiny_(1e-5 * bounding_diagonal(mesh)) {}
+
+  float operator()(const Vec3& p) const {
+    const double d = p[plane_.axis] - plane_.offset;
+    return std::abs(d) < tiny_ ? 0 : static_cast<float>(d);
+  }
+
+ private:
+  const MirrorPlane& plane_;
+  double tiny_;
+};
+
 }  // namespace
+
+std::size_t count_faces_in(const Mesh& mesh, const MirrorPlane& plane) {
+  const Heights height(mesh, plane);
+  std::size_t count = 0;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    count +=
+        std::ranges::all_of(mesh.faces[f], [&](Index v) { return height(mesh.positions[v]) == 0; });
+  }
+  return count;
+}
 
 void cut_at(Mesh& mesh, const MirrorPlane& plane) {
   const int axis = plane.axis;
+  const Heights height(mesh, plane);
   mesh.origin[axis] += plane.offset;
-  const double tiny = 1e-5 * bounding_diagonal(mesh);
-  for (Vec3& p : mesh.positions) {
-    const double d = p[axis] - plane.offset;
-    p[axis] = std::abs(d) < tiny ? 0 : static_cast<float>(d);
-  }
+  for (Vec3& p : mesh.positions) p[axis] = height(p);
   UnionFind whole = pieces(mesh);
   const std::size_t vertices = mesh.positions.size();
   std::map<std::pair<Index, Index>, Index> crossings;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "mesh/border.h"
@@ -27,7 +28,9 @@ std::vector<MirrorPlane> find_symmetry(const Mesh& input, const Symmetry& symmet
   for (int axis = 0; axis < 3; ++axis) {
     if (!symmetry.automatic && !symmetry.axes[axis]) continue;
     const MirrorPlane plane = search.find(axis, context);
-    if (plane.mismatch <= tolerance) {
+    if (count_faces_in(input, plane) == input.faces.size()) {
+      // Nothing has to be done where all is its own mirror image.
+    } else if (plane.mismatch <= tolerance) {
       planes.push_back(plane);
     } else if (symmetry.axes[axis]) {
       notes.emplace_back("not symmetric across ").push_back("xyz"[axis]);
@@ -71,6 +74,10 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const RemeshHal
     }
   }
   for (const MirrorPlane& plane : planes) {
+    if (const std::size_t count = count_faces_in(input, plane); count > 0) {
+      notes.push_back("left out " + std::to_string(count) + " faces in the mirror plane across " +
+                      "xyz"[plane.axis]);
+    }
     cut_at(input, plane);
     // Positions now count from the plane, and are in the units of the input from its origin.
     options.guides = fold_guides(options.guides, {plane.axis, input.origin[plane.axis], 0});
