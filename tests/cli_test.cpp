@@ -389,6 +389,26 @@ TEST_F(Cli, WeldJoinsTorn) {
   EXPECT_NEAR(static_cast<double>(statistics("--symmetry x --quiet").faces), faces, 0.25 * faces);
 }
 
+/// Two halves of a sphere that meet at a seam, as programs write what has two textures.
+TEST_F(Cli, NotesTellOfSeams) {
+  const Mesh shape = sample_shape("sphere");
+  Mesh halves = shape;
+  halves.positions.insert(halves.positions.end(), shape.positions.begin(), shape.positions.end());
+  const auto count = static_cast<Index>(shape.positions.size());
+  for (std::size_t f = 0; f < halves.faces.size(); ++f) {
+    const std::span<Index> face = halves.faces[f];
+    if (shape.positions[face[0]].z() < 0) continue;
+    for (Index& v : face) v += count;
+  }
+  write_mesh(folder_ / "in.obj", halves);
+  const Run plain = run("in.obj -o out.obj -f 300");
+  EXPECT_NE(plain.err.find("border edges lie on each other"), std::string::npos) << plain.err;
+  EXPECT_EQ(mesh_statistics(read_mesh(folder_ / "out.obj")).components, 2u);
+  const Run welded = run("in.obj -o out.obj -f 300 --weld");
+  EXPECT_EQ(welded.err, "");
+  EXPECT_EQ(mesh_statistics(read_mesh(folder_ / "out.obj")).euler, 2);
+}
+
 TEST_F(Cli, NotesSayWhatWasMended) {
   sample("cube", "in.obj");
   write("in.obj", read("in.obj") + "f 1 1 2\nf 1 2 2\nv 5 5 5\n");

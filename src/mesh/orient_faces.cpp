@@ -181,7 +181,7 @@ class Orienting {
 }  // namespace
 
 OrientReport orient_faces(Mesh& mesh, const Context& context) {
-  if (is_balanced(mesh, context)) return {};
+  if (is_balanced(mesh, context)) return {.may_have_border = false};
   const auto edges = two_faced_edges(mesh, context);
   if (std::ranges::all_of(edges, &TwoFacedEdge::agree)) return {};
   return Orienting(mesh, edges).run(context);

@@ -35,6 +35,13 @@ std::vector<std::string> describe(const OrientReport& oriented) {
   return notes;
 }
 
+std::vector<std::string> describe(const SeamReport& seams) {
+  constexpr std::size_t many = 4;  // one in so many: pieces may touch by chance
+  if (seams.seam_edges == 0 || many * seams.seam_edges < seams.border_edges) return {};
+  return {std::to_string(seams.seam_edges) + " of " + std::to_string(seams.border_edges) +
+          " border edges lie on each other, as along the seams of textures: --weld joins them"};
+}
+
 void note_missed_count(RemeshResult& result, const RemeshOptions& options) {
   const bool by_faces = options.face_count > 0;
   const std::size_t asked = by_faces ? options.face_count : options.vertex_count;

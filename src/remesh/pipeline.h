@@ -91,6 +91,7 @@ class Pipeline {
   /// faces to the other. If it returns true that is kept, split; else all is as it was.
   template <typename Change>
   bool change_quads(Extraction& extraction, const Change& change);
+  void add_notes(const std::vector<std::string>& notes);
   void drop_pieces();
 
   std::size_t inverted_faces() const;

@@ -8,6 +8,7 @@
 #include "mesh/long_edges.h"
 #include "mesh/orient_faces.h"
 #include "mesh/refine_slivers.h"
+#include "mesh/seams.h"
 #include "meshgrain/clean.h"
 #include "meshgrain/error.h"
 #include "meshgrain/surface.h"
@@ -39,11 +40,15 @@ void Pipeline::clean_up(Mesh input) {
     enter(frame_, input, context_);
     const bool is_ready = is_cloud_ || input.faces.uniform_degree() == 3;
     surface_ = is_ready ? std::move(input) : triangulate(input);
-    for (std::string& note : describe(orient_faces(surface_, context_))) {
-      result_.report.notes.push_back(std::move(note));
-    }
+    const OrientReport oriented = orient_faces(surface_, context_);
+    add_notes(describe(oriented));
+    if (!is_cloud_ && oriented.may_have_border) add_notes(describe(find_seams(surface_, context_)));
     drop_pieces();
   });
+}
+
+void Pipeline::add_notes(const std::vector<std::string>& notes) {
+  result_.report.notes.insert(result_.report.notes.end(), notes.begin(), notes.end());
 }
 
 void Pipeline::drop_pieces() {
@@ -145,8 +150,7 @@ void Pipeline::lay_guides(double edge_length) {
       lines = feature_edges(surface_, feature_options(), side, context_);
     }
     TracedGuides traced = trace_guides(surface_, guides, lines, edge_length, frame_.scale);
-    result_.report.notes.insert(result_.report.notes.end(), traced.notes.begin(),
-                                traced.notes.end());
+    add_notes(traced.notes);
     const auto is_hard = [&](const GuideRun& run) { return cut && run.strength == 1; };
     std::vector<GuideRun> hard;
     for (GuideRun& run : traced.runs)

@@ -1,0 +1,28 @@
+#include "mesh/seams.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "mesh/border.h"
+#include "mesh/weld.h"
+
+namespace meshgrain {
+
+SeamReport find_seams(const Mesh& mesh, const Context& context) {
+  DistinctPositions distinct;
+  std::vector<std::array<Index, 2>> edges;  // between places, as their faces run
+  for (const auto& [a, b] : border_edges(mesh, context)) {
+    const Index from = distinct.add(mesh.positions[a]), to = distinct.add(mesh.positions[b]);
+    if (from != to) edges.push_back({from, to});
+  }
+  std::ranges::sort(edges);
+  SeamReport report;
+  report.border_edges = edges.size();
+  report.seam_edges = static_cast<std::size_t>(std::ranges::count_if(edges, [&](const auto& edge) {
+    return std::ranges::binary_search(edges, std::array{edge[1], edge[0]});
+  }));
+  return report;
+}
+
+}  // namespace meshgrain
