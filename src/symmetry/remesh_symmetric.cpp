@@ -8,6 +8,7 @@
 
 #include "mesh/border.h"
 #include "meshgrain/error.h"
+#include "meshgrain/statistics.h"
 #include "meshgrain/surface.h"
 #include "meshgrain/triangulate.h"
 #include "remesh/clean_input.h"
@@ -47,6 +48,19 @@ std::vector<MirrorPlane> find_symmetry(const Mesh& input, const Symmetry& symmet
   return {};
 }
 
+/// What a manifold would have twice, were both halves of it like one; of others nothing.
+struct Topology {
+  std::size_t components = 0, boundary_loops = 0;
+  long euler = 0;
+  bool operator==(const Topology&) const = default;
+};
+
+Topology topology(const Mesh& mesh) {
+  const MeshStatistics s = mesh_statistics(mesh);
+  if (s.non_manifold_edges + s.non_manifold_vertices > 0) return {};
+  return {s.components, s.boundary_loops, s.euler};
+}
+
 }  // namespace
 
 RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const RemeshHalf& remesh_half,
@@ -64,7 +78,9 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const RemeshHal
   if (options.edge_length == 0 && options.face_count == 0 && options.vertex_count == 0) {
     options.vertex_count = std::max<std::size_t>(input.positions.size() / 16, 1);
   }
+  Topology before;
   if (!planes.empty()) {
+    before = topology(input);
     input = triangulate(input);
     // Before the cut, whose border has to stay where it is.
     const Target target(options, options.faces, vertices, 1);
@@ -102,6 +118,11 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const RemeshHal
                                   : 0.2 * edge_lengths(result.mesh, context).mean;
     add_mirror_image(result.mesh, plane.axis, near);
     notes.emplace_back("made symmetric across ").push_back("xyz"[plane.axis]);
+  }
+  if (before.components > 0 && topology(result.mesh) != before) {
+    notes.emplace_back(
+        "the halves of the input are not alike: a hole, handle or piece that only one "
+        "has is lost, or on both sides now");
   }
   result.report.input_vertices = vertices;
   result.report.input_faces = faces;
