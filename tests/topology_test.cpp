@@ -5,10 +5,12 @@
 #include <utility>
 #include <vector>
 
+#include "made_fields.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
 #include "meshgrain/statistics.h"
 #include "same_topology.h"
+#include "util/hash.h"
 
 namespace meshgrain {
 namespace {
@@ -91,6 +93,29 @@ Mesh faulty_scan(std::size_t k) {
     scan.faces.push_back({first, first + 1, first + 2});
   }
   return scan;
+}
+
+/// A sheet without one face in ten, chosen by a hash: many of the holes touch others at a vertex.
+TEST(Topology, HolesThatTouchDoNotBecomeOne) {
+  const Mesh sheet = made::grid(24, 24, false, false, [](double u, double v) {
+    return Vec3(static_cast<float>(u), static_cast<float>(v), static_cast<float>(u * (1 - u)));
+  });
+  Mesh input;
+  input.positions = sheet.positions;
+  for (std::size_t f = 0; f < sheet.faces.size(); ++f) {
+    if (hash64(f) % 10 != 0) input.faces.push_back(sheet.faces[f]);
+  }
+  const MeshStatistics before = mesh_statistics(input);
+  ASSERT_EQ(before.non_manifold_edges, 0u);
+  ASSERT_GT(before.non_manifold_vertices, 10u);
+  for (const std::size_t count : {100, 500}) {
+    SCOPED_TRACE(count);
+    RemeshOptions options;
+    options.face_count = count;
+    const MeshStatistics after = mesh_statistics(remesh(input, options).mesh);
+    EXPECT_EQ(after.non_manifold_edges, 0u);
+    EXPECT_EQ(after.boundary_loops, before.boundary_loops);
+  }
 }
 
 /// Holes and pieces that are nothing but faults take few faces from the rest.

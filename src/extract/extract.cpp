@@ -1,8 +1,6 @@
 #include "meshgrain/extract.h"
 
 #include <algorithm>
-#include <iterator>
-#include <map>
 #include <utility>
 
 #include "extract/cancel_singularities.h"
@@ -10,6 +8,7 @@
 #include "extract/drop_unused.h"
 #include "extract/face_repair.h"
 #include "extract/graph_clusters.h"
+#include "extract/join_pieces.h"
 #include "extract/lattice_mesh.h"
 #include "extract/lattice_repair.h"
 #include "extract/mesh_clusters.h"
@@ -17,7 +16,6 @@
 #include "extract/pair_odd_faces.h"
 #include "extract/polygon_map.h"
 #include "graph/pieces.h"
-#include "mesh/vertex_faces.h"
 #include "util/union_find.h"
 
 namespace meshgrain {
@@ -94,57 +92,6 @@ Extraction extract_from_graph(const Graph& graph, const OrientationField& orient
   Extraction result = collect_faces(map, repair, clusters, vertex, context);
   drop_fragments(result, graph, context);
   return result;
-}
-
-/// Makes the pieces that a non-manifold surface was cut into meet again: two vertices that share
-/// vertices of the surface become one, those that share most first, unless they share a face.
-void join_pieces(Extraction& extraction, std::vector<CollapsedMesh::Meeting> meetings,
-                 std::span<const Index> vertex, const Context& context) {
-  if (meetings.empty()) return;
-  Mesh& mesh = extraction.mesh;
-  std::stable_sort(meetings.begin(), meetings.end(),
-                   [](const auto& a, const auto& b) { return a.count > b.count; });
-  const VertexFaces around = vertex_faces(mesh, context);
-  UnionFind sets(mesh.positions.size());
-  std::map<Index, std::vector<Index>> members;  // of the sets with more than one
-  const auto members_of = [&](Index root) {
-    const auto it = members.find(root);
-    return it == members.end() ? std::vector<Index>{root} : it->second;
-  };
-  const auto share_face = [&](Index v, Index w) {
-    const auto a = around[v], b = around[w];
-    std::vector<Index> common;
-    std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
-    return !common.empty();
-  };
-  for (const auto& meeting : meetings) {
-    if (vertex[meeting.a] == no_index || vertex[meeting.b] == no_index) continue;
-    const Index a = sets.find(vertex[meeting.a]), b = sets.find(vertex[meeting.b]);
-    if (a == b) continue;
-    std::vector<Index> both = members_of(a);
-    const std::vector<Index> others = members_of(b);
-    bool apart = true;
-    for (const Index v : both) {
-      for (const Index w : others) apart = apart && !share_face(v, w);
-    }
-    if (!apart) continue;
-    both.insert(both.end(), others.begin(), others.end());
-    sets.unite(a, b);
-    members.erase(a);
-    members.erase(b);
-    members[sets.find(a)] = std::move(both);
-  }
-  for (const auto& [root, list] : members) {
-    Vec3 sum = Vec3::Zero();
-    for (const Index v : list) sum += mesh.positions[v];
-    mesh.positions[root] = sum / static_cast<float>(list.size());
-  }
-  for (Index& v : mesh.faces.corners()) v = sets.find(v);
-  for (LineEdge& edge : extraction.line_edges) {
-    edge = {sets.find(edge.a), sets.find(edge.b), edge.line};
-  }
-  for (Index& v : extraction.corners) v = sets.find(v);
-  drop_unused(extraction);
 }
 
 /// The way over the mesh itself, which keeps its topology.

@@ -12,6 +12,7 @@
 #include "extract/disk_clusters.h"
 #include "features/feature_jumps.h"
 #include "field/posy.h"
+#include "mesh/border.h"
 #include "util/collect.h"
 #include "util/indices.h"
 
@@ -90,7 +91,7 @@ class Collapse {
     }
   }
 
-  CollapsedMesh result(const Context& context) &&;
+  CollapsedMesh result(const Mesh& surface, const Context& context) &&;
 
  private:
   /// The map of the surface with each disk as one vertex, in the frame of its root. Returns the
@@ -255,31 +256,54 @@ class Collapse {
   LinkCondition link_;
 };
 
+/// Whether each vertex of a surface is on an edge at which it is cut.
+std::vector<std::uint8_t> on_cut_edges(const Mesh& surface, const Context& context) {
+  auto border = border_edges(surface, context);
+  for (auto& [a, b] : border) std::tie(a, b) = std::minmax({a, b});
+  std::sort(border.begin(), border.end());
+  std::vector<std::uint8_t> result(surface.positions.size(), 0);
+  for (const auto& ends : rim_edges(surface, context)) {
+    if (std::binary_search(border.begin(), border.end(), ends)) continue;
+    for (const Index v : ends) result[v] = 1;
+  }
+  return result;
+}
+
 /// Members of different clusters that are one vertex of the surface.
-std::vector<CollapsedMesh::Meeting> find_meetings(std::span<const Index> sources,
+std::vector<CollapsedMesh::Meeting> find_meetings(const Mesh& surface,
+                                                  std::span<const Index> sources,
                                                   std::span<const Index> cluster,
-                                                  std::size_t surface_vertices) {
-  std::vector<Index> first(surface_vertices, no_index);  // member
-  std::vector<std::array<Index, 2>> pairs;
+                                                  const Context& context) {
+  struct Pair {
+    Index a, b, source;
+    auto operator<=>(const Pair&) const = default;
+  };
+  std::vector<Index> first(surface.positions.size(), no_index);  // member
+  std::vector<Pair> pairs;
   for (Index m = 0; m < sources.size(); ++m) {
     Index& other = first[sources[m]];
     if (other == no_index) {
       other = m;
     } else if (cluster[other] != cluster[m]) {
-      pairs.push_back({std::min(cluster[other], cluster[m]), std::max(cluster[other], cluster[m])});
+      const auto [a, b] = std::minmax({cluster[other], cluster[m]});
+      pairs.push_back({a, b, sources[m]});
     }
   }
+  if (pairs.empty()) return {};
   std::sort(pairs.begin(), pairs.end());
+  const std::vector<std::uint8_t> on_edge = on_cut_edges(surface, context);
   std::vector<CollapsedMesh::Meeting> meetings;
-  for (std::size_t k = 0; k < pairs.size();) {
-    const std::size_t start = k;
-    while (k < pairs.size() && pairs[k] == pairs[start]) ++k;
-    meetings.push_back({pairs[start][0], pairs[start][1], static_cast<Index>(k - start)});
+  for (const auto& [a, b, source] : pairs) {
+    if (meetings.empty() || meetings.back().a != a || meetings.back().b != b) {
+      meetings.push_back({a, b, 0, false});
+    }
+    ++meetings.back().count;
+    meetings.back().along_edge |= on_edge[source] != 0;
   }
   return meetings;
 }
 
-CollapsedMesh Collapse::result(const Context& context) && {
+CollapsedMesh Collapse::result(const Mesh& surface, const Context& context) && {
   const auto vertices = static_cast<Index>(map_.vertices());
   const PolygonMap::Renumbering rank = map_.compact();
   std::vector<Index> cluster(vertices), cluster_of_root(graph_.size(), no_index);
@@ -310,7 +334,7 @@ CollapsedMesh Collapse::result(const Context& context) && {
   jumps_.resize(map_.halfedges() / 2);
   jumps_.shrink_to_fit();
   lattice_.lines.resize(jumps_.size());
-  auto meetings = find_meetings(sources_, cluster, graph_.size());
+  auto meetings = find_meetings(surface, sources_, cluster, context);
   // The members of disks, besides their roots.
   std::vector<Index> members = std::move(sources_);
   for (Index i = 0; i < graph_.size(); ++i) {
@@ -330,7 +354,7 @@ CollapsedMesh collapse_mesh(const Mesh& surface, const FeatureLines& features, c
                             PositionEnergy energy, const Context& context) {
   Collapse collapse(surface, features, graph, orientation, position, energy, context);
   collapse.run(context);
-  return std::move(collapse).result(context);
+  return std::move(collapse).result(surface, context);
 }
 
 }  // namespace meshgrain

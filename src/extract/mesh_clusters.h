@@ -11,9 +11,11 @@ struct CollapsedMesh {
   JumpMap lattice;
   Clusters clusters;         // of the vertices
   std::vector<Index> roots;  // the node whose frame is that of the vertex
-  /// Pairs of clusters that share a vertex of the surface, at which it was cut, with how many.
+  /// Pairs of clusters that share vertices of the surface, at which it was cut: how many, and
+  /// whether one is on an edge between more than two faces.
   struct Meeting {
     Index a, b, count;
+    bool along_edge;
   };
   std::vector<Meeting> meetings;
 };

@@ -1,0 +1,108 @@
+#include "extract/join_pieces.h"
+
+#include <algorithm>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <utility>
+
+#include "extract/drop_unused.h"
+#include "mesh/vertex_faces.h"
+#include "util/sort_unique.h"
+#include "util/union_find.h"
+
+namespace meshgrain {
+namespace {
+
+bool share_any(std::span<const Index> a, std::span<const Index> b) {
+  std::vector<Index> common;
+  std::ranges::set_intersection(a, b, std::back_inserter(common));
+  return !common.empty();
+}
+
+class Joining {
+ public:
+  Joining(Mesh& mesh, const Context& context)
+      : mesh_(mesh), around_(vertex_faces(mesh, context)), sets_(mesh.positions.size()) {}
+
+  void join(Index v, Index w, bool along_edge) {
+    const Index a = sets_.find(v), b = sets_.find(w);
+    if (a == b) return;
+    std::vector<Index> both = members(a);
+    const std::vector<Index> others = members(b);
+    if (share_any(faces(both), faces(others))) return;
+    if (!along_edge && share_any(neighbors(both), neighbors(others))) return;
+    both.insert(both.end(), others.begin(), others.end());
+    sets_.unite(a, b);
+    members_.erase(a);
+    members_.erase(b);
+    members_[sets_.find(a)] = std::move(both);
+  }
+
+  /// The vertex that each has become part of, all of which are at the mean of theirs.
+  UnionFind take() && {
+    for (const auto& [root, list] : members_) {
+      Vec3 sum = Vec3::Zero();
+      for (const Index v : list) sum += mesh_.positions[v];
+      mesh_.positions[root] = sum / static_cast<float>(list.size());
+    }
+    return std::move(sets_);
+  }
+
+ private:
+  std::vector<Index> members(Index root) const {
+    const auto it = members_.find(root);
+    return it == members_.end() ? std::vector<Index>{root} : it->second;
+  }
+
+  std::vector<Index> faces(const std::vector<Index>& vertices) const {
+    std::vector<Index> result;
+    for (const Index v : vertices)
+      result.insert(result.end(), around_[v].begin(), around_[v].end());
+    sort_unique(result);
+    return result;
+  }
+
+  /// The vertices that have an edge with one of some, by the sets that they are in.
+  std::vector<Index> neighbors(const std::vector<Index>& vertices) {
+    std::vector<Index> result;
+    for (const Index v : vertices) {
+      for (const Index f : around_[v]) {
+        const auto face = std::as_const(mesh_.faces)[f];
+        const std::size_t n = face.size(), corner = corner_of(face, v);
+        for (const std::size_t k : {corner + 1, corner + n - 1}) {
+          result.push_back(sets_.find(face[k % n]));
+        }
+      }
+    }
+    sort_unique(result);
+    return result;
+  }
+
+  Mesh& mesh_;
+  const VertexFaces around_;
+  UnionFind sets_;
+  std::map<Index, std::vector<Index>> members_;  // of the sets with more than one
+};
+
+}  // namespace
+
+void join_pieces(Extraction& extraction, std::vector<CollapsedMesh::Meeting> meetings,
+                 std::span<const Index> vertex, const Context& context) {
+  if (meetings.empty()) return;
+  std::ranges::stable_sort(meetings, std::greater(), &CollapsedMesh::Meeting::count);
+  Joining joining(extraction.mesh, context);
+  for (const auto& [a, b, count, along_edge] : meetings) {
+    if (vertex[a] == no_index || vertex[b] == no_index) continue;
+    joining.join(vertex[a], vertex[b], along_edge);
+  }
+  UnionFind sets = std::move(joining).take();
+  for (Index& v : extraction.mesh.faces.corners()) v = sets.find(v);
+  for (LineEdge& edge : extraction.line_edges) {
+    edge = {sets.find(edge.a), sets.find(edge.b), edge.line};
+  }
+  for (Index& v : extraction.corners) v = sets.find(v);
+  drop_unused(extraction);
+}
+
+}  // namespace meshgrain

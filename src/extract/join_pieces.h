@@ -1,0 +1,18 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "extract/mesh_clusters.h"
+#include "meshgrain/extract.h"
+
+namespace meshgrain {
+
+/// Makes the pieces that a non-manifold surface was cut into meet again: two vertices that share
+/// vertices of the surface become one, those that share most first, unless they share a face. Edges
+/// become one only where the surface has edges between more than two faces. `vertex`: of the
+/// extraction, for each cluster, or no_index.
+void join_pieces(Extraction& extraction, std::vector<CollapsedMesh::Meeting> meetings,
+                 std::span<const Index> vertex, const Context& context);
+
+}  // namespace meshgrain
