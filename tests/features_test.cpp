@@ -12,6 +12,7 @@
 #include "features/fading_creases.h"
 #include "features/mechanical_creases.h"
 #include "kept_creases.h"
+#include "made_fields.h"
 #include "made_graph.h"
 #include "mesh/border.h"
 #include "meshgrain/remesh.h"
@@ -197,6 +198,29 @@ TEST(Features, CreasesAndCornersAreKept) {
       }
     }
   }
+}
+
+/// A ring that is twisted as a rope of `strands` is, twice around.
+Mesh rope(int strands) {
+  return made::grid(120, 48, true, true, [strands](double u, double v) {
+    const double a = 2 * std::numbers::pi * u, b = 2 * std::numbers::pi * (v + 2 * u);
+    const double groove = std::abs(std::sin(std::numbers::pi * strands * v));
+    const double r = 0.27 + 0.06 * groove, distance = 1 + r * std::cos(b);
+    return Vec3(Eigen::Vector3d(distance * std::cos(a), distance * std::sin(a), r * std::sin(b))
+                    .cast<float>());
+  });
+}
+
+/// Where the surface bends along another way than its creases run.
+TEST(Features, CrossesTurnToTheGroovesOfARope) {
+  RemeshOptions options;
+  options.face_count = 2000;
+  const Mesh input = rope(4);
+  const Mesh result = remesh(input, options).mesh;
+  const MeshStatistics s = mesh_statistics(result);
+  EXPECT_LE(s.irregular_vertices, 20u);
+  EXPECT_LT(s.angle_sigma, 16);
+  EXPECT_GT(made::kept_creases(input, result).creases, 0.99);
 }
 
 /// The largest angle between neighbours among the points on the circle of the shaft's upper end.

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "features/askew_lines.h"
 #include "features/lines_abreast.h"
 #include "field/bend_alignment.h"
 #include "field/transfer.h"
@@ -233,10 +234,21 @@ void Pipeline::orient() {
     constraints.insert(constraints.end(), curvature.begin(), curvature.end());
     constraints.insert(constraints.end(), constraints_.orientation.begin(),
                        constraints_.orientation.end());
-    const auto solver = OrientationSolver::create(hierarchy_, orientation, constraints);
-    while (solver->step(context_)) context_.progress("orientation field", solver->progress());
-    fields().orientation = solver->field();
-    result_.report.orientation_energies = solver->energies();
+    const auto solve = [&] {
+      const auto solver = OrientationSolver::create(hierarchy_, orientation, constraints);
+      while (solver->step(context_)) context_.progress("orientation field", solver->progress());
+      fields().orientation = solver->field();
+      result_.report.orientation_energies = solver->energies();
+    };
+    solve();
+    // Few creases are: crosses turn to them by themselves, unless the surface bends another way.
+    constexpr double many = 0.08;
+    if (orientation.rosy == 4 &&
+        share_askew(features_, graph().normals, fields().orientation) > many) {
+      const auto held = hold_to_lines(features_);
+      constraints.insert(constraints.end(), held.begin(), held.end());
+      solve();
+    }
   });
 }
 
