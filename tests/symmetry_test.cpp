@@ -186,7 +186,7 @@ TEST(Symmetry, WhatLiesInThePlaneStaysWhole) {
   EXPECT_EQ(result.report.notes, std::vector<std::string>{"made symmetric across x"});
 }
 
-/// A fin between both halves is one.
+/// As a fin is that stands between both halves.
 TEST(Symmetry, TellsWhatIsLeftOutInThePlane) {
   Mesh mesh = sample_shape("torus");
   for (const Vec3& p : {Vec3(0, -3, -3), Vec3(0, 3, -3), Vec3(0, 0, -2)}) {
@@ -202,7 +202,7 @@ TEST(Symmetry, TellsWhatIsLeftOutInThePlane) {
   EXPECT_EQ(notes[0], "left out 1 faces in the mirror plane across x");
 }
 
-/// Of two plates beside each other one has a small hole.
+/// One half of a plate has a small hole.
 TEST(Symmetry, TellsThatHalvesAreNotAlike) {
   Mesh plate = made::grid(40, 20, false, false, [](double u, double v) {
     return Vec3(2 * static_cast<float>(u) - 1, static_cast<float>(v), 0);

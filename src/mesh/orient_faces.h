@@ -11,7 +11,9 @@ struct OrientReport {
   std::size_t turned_faces = 0;
   /// Pieces without two sides, as a Möbius strip: along a short curve their faces still disagree.
   std::size_t one_sided_pieces = 0;
-  bool may_have_border = true;  ///< Unknown but where faces agreed across all of their edges.
+  /// False where every edge is used as often in one direction as in the other, as in what is
+  /// closed.
+  bool may_have_border = true;
 };
 
 /// Turns faces to the side of their neighbours, in pieces that hang together by edges between two

@@ -37,9 +37,13 @@ std::vector<std::string> describe(const OrientReport& oriented) {
 
 std::vector<std::string> describe(const SeamReport& seams) {
   constexpr std::size_t many = 4;  // one in so many: pieces may touch by chance
-  if (seams.seam_edges == 0 || many * seams.seam_edges < seams.border_edges) return {};
-  return {std::to_string(seams.seam_edges) + " of " + std::to_string(seams.border_edges) +
-          " border edges lie on each other, as along the seams of textures: --weld joins them"};
+  std::vector<std::string> notes;
+  if (seams.seam_edges > 0 && many * seams.seam_edges >= seams.border_edges) {
+    notes.push_back(
+        std::to_string(seams.seam_edges) + " of " + std::to_string(seams.border_edges) +
+        " border edges lie on each other, as along the seams of textures: --weld joins them");
+  }
+  return notes;
 }
 
 void note_missed_count(RemeshResult& result, const RemeshOptions& options) {

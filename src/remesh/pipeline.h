@@ -17,7 +17,8 @@
 
 namespace meshgrain {
 
-/// The stages of remesh(), in their order: each leaves what the next ones need.
+/// The stages of remesh(), in their order: each leaves what the next ones need. Those up to the
+/// graph are in pipeline_surface.cpp, those from the fields on in pipeline_faces.cpp.
 class Pipeline {
  public:
   Pipeline(const Mesh& input, const RemeshOptions& options, const Context& context);

@@ -310,7 +310,7 @@ void Pipeline::try_less_regular() {
     regularity_ = moderate + share * (options_.regularity - moderate);
     // Where the input passes through itself there are always some.
     if (!try_again(before / 2)) continue;
-    result_.report.notes.push_back(
+    result_.report.notes.emplace_back(
         "less regular than was asked for: faces would be inverted or pass through each other");
     break;
   }

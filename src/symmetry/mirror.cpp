@@ -89,26 +89,19 @@ void drop_crumbs(Mesh& mesh, UnionFind& whole, std::size_t vertices) {
   mesh.faces = std::move(kept);
 }
 
-/// Distances from a plane, which of vertices that are hardly off it are 0.
-class Heights {
- public:
-  Heights(const Mesh& mesh, const MirrorPlane& plane)
-      : plane_(plane), tiny_(1e-5 * bounding_diagonal(mesh)) {}
-
-  float operator()(const Vec3& p) const {
-    const double d = p[plane_.axis] - plane_.offset;
-    return std::abs(d) < tiny_ ? 0 : static_cast<float>(d);
-  }
-
- private:
-  const MirrorPlane& plane_;
-  double tiny_;
-};
+/// A function that gives the distances of a mesh's vertices from a plane: 0 if they are hardly off
+/// it.
+auto heights_over(const MirrorPlane& plane, const Mesh& mesh) {
+  return [plane, tiny = 1e-5 * bounding_diagonal(mesh)](const Vec3& p) {
+    const double d = p[plane.axis] - plane.offset;
+    return std::abs(d) < tiny ? 0.0f : static_cast<float>(d);
+  };
+}
 
 }  // namespace
 
 std::size_t count_faces_in(const Mesh& mesh, const MirrorPlane& plane) {
-  const Heights height(mesh, plane);
+  const auto height = heights_over(plane, mesh);
   std::size_t count = 0;
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     count +=
@@ -119,7 +112,7 @@ std::size_t count_faces_in(const Mesh& mesh, const MirrorPlane& plane) {
 
 void cut_at(Mesh& mesh, const MirrorPlane& plane) {
   const int axis = plane.axis;
-  const Heights height(mesh, plane);
+  const auto height = heights_over(plane, mesh);
   mesh.origin[axis] += plane.offset;
   for (Vec3& p : mesh.positions) p[axis] = height(p);
   UnionFind whole = pieces(mesh);

@@ -29,9 +29,8 @@ std::vector<MirrorPlane> find_symmetry(const Mesh& input, const Symmetry& symmet
   for (int axis = 0; axis < 3; ++axis) {
     if (!symmetry.automatic && !symmetry.axes[axis]) continue;
     const MirrorPlane plane = search.find(axis, context);
-    if (count_faces_in(input, plane) == input.faces.size()) {
-      // Nothing has to be done where all is its own mirror image.
-    } else if (plane.mismatch <= tolerance) {
+    if (count_faces_in(input, plane) == input.faces.size()) continue;  // its own mirror image
+    if (plane.mismatch <= tolerance) {
       planes.push_back(plane);
     } else if (symmetry.axes[axis]) {
       notes.emplace_back("not symmetric across ").push_back("xyz"[axis]);
