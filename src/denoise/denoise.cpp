@@ -69,9 +69,19 @@ bool bends_evenly(const Mesh& triangles) {
   return deviation < most * height;
 }
 
+/// Of a sample, which changes. The creases of a part are there long before all of the noise is out:
+/// where there are hardly any then, they need not be exact.
 CreaseLengths lengths_without_noise(Mesh& sample, const Context& context) {
-  NormalFilter(sample, NormalFilter::Border::moves, context).run();
-  return crease_lengths(sample, sharp_edges(sample, flat_degrees, context), context);
+  constexpr int first_look = 3;       // after so many rounds, where parts have more than twice as
+  constexpr double hopeless = 0.125;  // much of clear creases as of doubtful ones
+  NormalFilter filter(sample, NormalFilter::Border::moves, context);
+  CreaseLengths lengths{};
+  for (const int rounds : {first_look, NormalFilter::rounds}) {
+    filter.run(rounds);
+    lengths = crease_lengths(sample, sharp_edges(sample, flat_degrees, context), context);
+    if (lengths.clear <= hopeless * lengths.doubtful) break;
+  }
+  return lengths;
 }
 
 /// Some of the surface tells at once that most scans are no part, and less of it that most

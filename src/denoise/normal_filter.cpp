@@ -56,16 +56,16 @@ NormalFilter::NormalFilter(Mesh& triangles, Border border, const Context& contex
   offsets_.resize(count);
 }
 
-void NormalFilter::run() {
+void NormalFilter::run(int end) {
   // Wide at first, to agree across the noise; then narrow, so that faces in between decide for one
   // side of a crease.
-  constexpr int rounds = 12, moves = 10;
+  constexpr int moves = 10;
   constexpr float first_spread = 0.4f, last_spread = 0.2f;
-  for (int round = 0; round < rounds; ++round) {
-    context_.progress("noise", static_cast<double>(round) / rounds);
+  for (; round_ < end; ++round_) {
+    context_.progress("noise", static_cast<double>(round_) / rounds);
     measure_facets();
     measure_patches();
-    const float share = static_cast<float>(round) / (rounds - 1);
+    const float share = static_cast<float>(round_) / (rounds - 1);
     average(mean_reach(), first_spread + share * (last_spread - first_spread));
     for (int move = 0; move < moves; ++move) move_vertices();
   }

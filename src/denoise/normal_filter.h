@@ -20,7 +20,9 @@ class NormalFilter {
   /// `triangles` must outlive this.
   NormalFilter(Mesh& triangles, Border border, const Context& context);
 
-  void run();
+  static constexpr int rounds = 12;
+  /// The rounds until there were so many.
+  void run(int end = rounds);
 
  private:
   struct Facet {
@@ -45,6 +47,7 @@ class NormalFilter {
 
   Mesh& mesh_;
   const Context& context_;
+  int round_ = 0;
   VertexFaces vertex_faces_;
   std::vector<std::uint8_t> stays_;
   std::vector<Index> starts_, neighbors_;

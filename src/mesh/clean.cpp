@@ -36,14 +36,29 @@ std::size_t lowest_corner(std::span<const Index> face) {
   return static_cast<std::size_t>(std::ranges::min_element(face) - face.begin());
 }
 
-/// What all rotations of a face have in common, in both directions, besides the lowest corner: the
-/// two beside it. Of triangles that is all.
+/// A face under what it shares with its duplicates: the lowest corner and the two beside it, which
+/// all rotations of it have in common, in both directions. Of triangles that is all.
+struct Keyed {
+  Index lowest, beside, other;
+  Index face;
+  auto operator<=>(const Keyed&) const = default;
+
+  bool has_key_of(const Keyed& o) const {
+    return lowest == o.lowest && beside == o.beside && other == o.other;
+  }
+};
+
 template <typename Face>
-std::array<Index, 2> key_of(const Face& face) {
+Keyed keyed(const Face& face, std::size_t f) {
+  if constexpr (Face::extent == 3) {
+    const Index a = face[0], b = face[1], c = face[2];
+    const Index low = std::min(std::min(a, b), c), high = std::max(std::max(a, b), c);
+    return {low, a ^ b ^ c ^ low ^ high, high, static_cast<Index>(f)};
+  }
   const std::size_t n = face.size(), low = lowest_corner(face);
   const auto [beside, other] =
       std::minmax(face[low + 1 == n ? 0 : low + 1], face[low == 0 ? n - 1 : low - 1]);
-  return {beside, other};
+  return {face[low], beside, other, static_cast<Index>(f)};
 }
 
 /// The corners of a face from the lowest on, towards the lower of its two neighbours.
@@ -56,52 +71,85 @@ std::vector<Index> canonical(std::span<const Index> face) {
   return result;
 }
 
-/// A face under what it shares with its duplicates.
-struct Keyed {
-  std::array<Index, 2> key;
-  Index face;
-  auto operator<=>(const Keyed&) const = default;
-};
-
-bool all_differ(std::span<const Keyed> faces) {
-  for (std::size_t k = 1; k < faces.size(); ++k) {
-    for (std::size_t earlier = 0; earlier < k; ++earlier) {
-      const auto &a = faces[k].key, &b = faces[earlier].key;
-      if (a[0] == b[0] && a[1] == b[1]) return false;
+/// Adds the pairs of equal faces among those with the same lowest corner.
+void find_equal(const Faces& faces, std::vector<Keyed>& here, std::vector<EqualFaces>& out) {
+  std::sort(here.begin(), here.end());
+  for (std::size_t k = 1; k < here.size(); ++k) {
+    for (std::size_t earlier = k; earlier-- > 0 && here[earlier].has_key_of(here[k]);) {
+      const Index f = here[k].face, g = here[earlier].face;
+      if (faces.degree(f) != faces.degree(g)) continue;
+      if (faces.degree(f) > 3 && canonical(faces[f]) != canonical(faces[g])) continue;
+      out.push_back({f, g});
+      break;
     }
   }
-  return true;
+}
+
+/// Whether there may be equal ones among faces that `at(k)` tells, in the order of their lowest
+/// corners, and those after the last that have its lowest corner too. In most meshes this is told
+/// at once: without branches, as no one could predict them.
+template <typename At>
+bool may_be_equal(std::size_t begin, std::size_t end, std::size_t faces, const At& at) {
+  constexpr std::size_t few = 8;  // have the same lowest corner, as a rule
+  const std::size_t count = std::min(end + few, faces) - begin;
+  std::vector<Index> lowest(count), hashes(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const Keyed face = at(begin + k);
+    const std::uint64_t sides = std::uint64_t{face.beside} << 32 | face.other;
+    lowest[k] = face.lowest;
+    hashes[k] = static_cast<Index>((sides * 0x9e3779b97f4a7c15u) >> 32) ^ face.lowest;
+  }
+  unsigned any = 0;
+  for (std::size_t apart = 1; apart < few; ++apart) {
+    for (std::size_t k = apart; k < count; ++k) any |= hashes[k] == hashes[k - apart];
+  }
+  for (std::size_t k = few; k < count; ++k) any |= lowest[k] == lowest[k - few];
+  return any != 0;
+}
+
+/// The pairs of equal faces among those that `at(k)` tells, in the order of their lowest corners.
+template <typename At>
+std::vector<EqualFaces> equal_in_order(const Faces& faces, const At& at, const Context& context) {
+  const auto starts = [&](std::size_t k) { return k == 0 || at(k - 1).lowest != at(k).lowest; };
+  const auto look = [&](std::size_t begin, std::size_t end, std::vector<EqualFaces>& out) {
+    if (!may_be_equal(begin, end, faces.size(), at)) return;
+    // Those are looked at here whose first one is.
+    while (begin < end && !starts(begin)) ++begin;
+    for (std::size_t k = begin; k < end;) {
+      std::vector<Keyed> here{at(k)};
+      while (++k < faces.size() && !starts(k)) here.push_back(at(k));
+      find_equal(faces, here, out);
+    }
+  };
+  return collect<EqualFaces>(faces.size(), look, context);
+}
+
+template <typename Corners>
+bool is_in_order(std::size_t faces, const Corners& corners, const Context& context) {
+  const auto steps_down = [&](std::size_t begin, std::size_t end) {
+    std::size_t count = 0;
+    Index before = begin == 0 ? 0 : std::ranges::min(corners(begin - 1));
+    for (std::size_t f = begin; f < end; ++f) {
+      const Index lowest = std::ranges::min(corners(f));
+      count += lowest < std::exchange(before, lowest);
+    }
+    return count;
+  };
+  return sum_over_ranges(faces, steps_down, context) == 0;
 }
 
 std::vector<EqualFaces> find_duplicates(const Faces& faces, std::size_t vertices,
                                         const Context& context) {
-  // Those with the same lowest corner come to lie next to each other, without a sort of them all.
-  UninitializedVector<Keyed> keyed(faces.size());
-  const std::vector<Index> offsets = with_corners(faces, [&](const auto& corners) {
-    const auto put = [&](std::size_t f, Index place) {
-      keyed[place] = {key_of(corners(f)), static_cast<Index>(f)};
-    };
-    return sort_by_lowest_vertex(faces, vertices, put, context);
+  return with_corners(faces, [&](const auto& corners) {
+    const auto find = [&](std::size_t f) { return keyed(corners(f), f); };
+    if (is_in_order(faces.size(), corners, context)) return equal_in_order(faces, find, context);
+    // Those with the same lowest corner come to lie next to each other, without a sort of them all.
+    UninitializedVector<Keyed> sorted(faces.size());
+    const auto put = [&](std::size_t f, Index place) { sorted[place] = find(f); };
+    sort_by_lowest_vertex(faces, vertices, put, context);
+    return equal_in_order(
+        faces, [&](std::size_t k) { return sorted[k]; }, context);
   });
-  const auto duplicates_around = [&](std::size_t first, std::size_t last,
-                                     std::vector<EqualFaces>& out) {
-    constexpr std::size_t few = 8;
-    for (std::size_t v = first; v < last; ++v) {
-      const std::span<Keyed> here(&keyed[0] + offsets[v], offsets[v + 1] - offsets[v]);
-      if (here.size() <= few && all_differ(here)) continue;
-      std::sort(here.begin(), here.end());
-      for (std::size_t k = 1; k < here.size(); ++k) {
-        for (std::size_t earlier = k; earlier-- > 0 && here[earlier].key == here[k].key;) {
-          const Index f = here[k].face, g = here[earlier].face;
-          if (faces.degree(f) != faces.degree(g)) continue;
-          if (faces.degree(f) > 3 && canonical(faces[f]) != canonical(faces[g])) continue;
-          out.push_back({f, g});
-          break;
-        }
-      }
-    }
-  };
-  return collect<EqualFaces>(vertices, duplicates_around, context);
 }
 
 /// Whether a face goes twice from one vertex to the same other one: around itself again.

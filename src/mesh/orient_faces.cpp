@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mesh/border.h"
+#include "mesh/sort_by_vertex.h"
 #include "util/hash.h"
 #include "util/sum.h"
 
@@ -20,21 +21,25 @@ using Vec3d = Eigen::Vector3d;
 /// Whether every edge is used as often in one direction as in the other: so it is in a closed mesh
 /// whose faces agree. Much faster than to look at each edge.
 bool is_balanced(const Mesh& mesh, const Context& context) {
-  const auto excess = [&](std::size_t begin, std::size_t end) {
-    std::uint64_t sum = 0;  // of a random number for each edge, up or down
-    for (std::size_t f = begin; f < end; ++f) {
-      const auto face = mesh.faces[f];
-      Index from = face.back();
-      for (const Index to : face) {
-        const auto [low, high] = std::minmax(from, to);
-        const std::uint64_t number = hash64((std::uint64_t{low} << 32) | high);
-        sum += from < to ? number : -number;
-        from = to;
+  return with_corners(mesh.faces, [&](const auto& corners) {
+    const auto excess = [&](std::size_t begin, std::size_t end) {
+      std::uint64_t sum = 0;  // of a random number for each edge, up or down
+      for (std::size_t f = begin; f < end; ++f) {
+        const auto face = corners(f);
+        Index from = face.back();
+        for (const Index to : face) {
+          // Without branches, as no one could predict them.
+          const std::uint64_t low = std::min(from, to), high = std::max(from, to);
+          const std::uint64_t number = hash64(low << 32 | high);
+          const std::uint64_t down = -std::uint64_t{to < from};  // all bits, or none
+          sum += (number ^ down) - down;
+          from = to;
+        }
       }
-    }
-    return sum;
-  };
-  return sum_over_ranges(mesh.faces.size(), excess, context) == 0;
+      return sum;
+    };
+    return sum_over_ranges(mesh.faces.size(), excess, context) == 0;
+  });
 }
 
 /// The faces with those across their edges.

@@ -165,6 +165,7 @@ class Pipeline {
   RemeshOptions wanted_;            // what the target goes by
   double regularity_;               // that is aimed at
   std::size_t clean_vertices_ = 0;  // of the input, without what clean_up() takes out
+  bool is_in_order_ = false;        // the surface, since it was read
   bool is_sharpened_ = false;
   bool is_coarsened_ = false;  // its creases are marked since then, and
   bool had_marks_ = false;     // others were before

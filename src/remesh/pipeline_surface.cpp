@@ -9,6 +9,7 @@
 #include "mesh/orient_faces.h"
 #include "mesh/refine_slivers.h"
 #include "mesh/seams.h"
+#include "mesh/weld.h"
 #include "meshgrain/clean.h"
 #include "meshgrain/error.h"
 #include "meshgrain/surface.h"
@@ -32,6 +33,12 @@ std::vector<std::uint8_t> picked(const std::vector<std::uint8_t>& flags,
 }  // namespace
 
 void Pipeline::clean_up(Mesh input) {
+  // What is read comes in any order; all that looks at neighbors is quicker with these nearby.
+  constexpr std::size_t many = 1 << 16;
+  if (input.positions.size() > many && input.faces.uniform_degree() >= 3 && !is_torn(input)) {
+    stage_("order", [&] { sort_along_curve(input, context_); });
+    is_in_order_ = true;
+  }
   stage_("clean", [&] {
     result_.report.notes = clean_input(input, context_);
     clean_vertices_ = input.positions.size();
@@ -76,7 +83,7 @@ void Pipeline::sharpen() {
 
 void Pipeline::coarsen() {
   if (is_cloud_ || !target_.is_dense(options_, surface_.positions.size(), input_size_)) return;
-  stage_("order", [&] { put_in_order(); });
+  if (!is_in_order_) stage_("order", [&] { put_in_order(); });
   // What is a crease is to be seen where the surface is as it was.
   stage_("features", [&] {
     had_marks_ = !surface_.marked_edges.empty();
@@ -88,6 +95,7 @@ void Pipeline::coarsen() {
     std::vector<std::uint8_t> stays(surface_.positions.size(), 0);
     for (const auto& [a, b] : surface_.marked_edges) stays[a] = stays[b] = 1;
     const CoarseEdges edges = target_.coarse_edges(options_, input_size_.area);
+    is_in_order_ = false;
     const auto kept = meshgrain::coarsen(surface_, edges, std::move(stays), context_);
     if (!locked_.empty()) locked_ = picked(locked_, kept);
     input_size_ = surface_size(surface_, context_);
@@ -111,7 +119,7 @@ void Pipeline::refine() {
     stage_("subdivide", [&] { split_long_edges(area, input_size_.edges); });
     lay_guides(target_.edge_length(area));
   }
-  stage_("order", [&] { put_in_order(); });
+  if (!is_in_order_) stage_("order", [&] { put_in_order(); });
 }
 
 bool Pipeline::split_long_edges(double area, const EdgeLengths& edges) {
@@ -123,6 +131,7 @@ bool Pipeline::split_long_edges(double area, const EdgeLengths& edges) {
     faces = faces_with_long_edges(surface_, limit, context_);
   }
   subdivide_faces(surface_, limit, std::move(faces), context_);
+  is_in_order_ = false;
   return true;
 }
 
@@ -155,7 +164,9 @@ void Pipeline::lay_guides(double edge_length) {
     std::vector<GuideRun> hard;
     for (GuideRun& run : traced.runs)
       (is_hard(run) ? hard : soft_guides_).push_back(std::move(run));
-    if (cut) guides_ = cut_guides(surface_, hard);
+    if (!cut) return;
+    guides_ = cut_guides(surface_, hard);
+    is_in_order_ = false;
   });
 }
 
