@@ -21,6 +21,15 @@ build_folder() {
   esac
 }
 
+# Options of CMake that suit this machine's processor.
+processor_options() {
+  local flag avx2=ON
+  for flag in avx2 bmi1 bmi2 abm popcnt; do
+    grep -qw -m 1 "$flag" /proc/cpuinfo 2>/dev/null || avx2=OFF
+  done
+  echo "-DMESHGRAIN_AVX2=$avx2"
+}
+
 cores() {
   nproc 2>/dev/null || getconf _NPROCESSORS_ONLN
 }

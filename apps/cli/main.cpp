@@ -53,6 +53,17 @@ int fail(int status, std::string message) {
 int main(int argc, char** argv) {
   constexpr int failure = 1;
   constexpr int wrong_usage = 2;
+#ifdef MESHGRAIN_AVX2
+  // Before anything that such a processor could not do.
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("bmi2")) {
+    std::fputs(
+        "meshgrain: error: this was built for processors with AVX2, which this one has not: build "
+        "it "
+        "with -DMESHGRAIN_AVX2=OFF\n",
+        stderr);
+    return failure;
+  }
+#endif
   keep_freed_memory();
   try {
     run(argc, argv);
