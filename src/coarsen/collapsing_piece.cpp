@@ -16,6 +16,15 @@ Vec3 area_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 }  // namespace
 
+/// Calls `body(k)` for all places of so many rows of lanes.
+template <typename Body>
+void for_lanes(std::size_t size, const Body& body) {
+  constexpr std::size_t lanes = 8;
+  for (std::size_t row = 0; row < size; row += lanes) {
+    for (std::size_t lane = 0; lane < lanes; ++lane) body(row + lane);
+  }
+}
+
 void CollapsingPiece::Ring::remove(Index v) {
   const auto end = around.begin() + size;
   std::copy(std::find(around.begin(), end, v) + 1, end, std::find(around.begin(), end, v));
@@ -136,39 +145,90 @@ bool CollapsingPiece::keeps_topology(Index a, Index b) const {
   return common == 2;
 }
 
-void CollapsingPiece::add_to_star(Index v, Index other, Star& star) const {
-  const Ring& ring = rings_[v];
-  for (std::size_t k = 0; k < ring.size; ++k) {
-    const Index p = ring.around[k], q = ring.around[ring.after(k)];
-    if (p == other || q == other) continue;
-    star.from[star.size] = positions_[p];
-    star.to[star.size] = positions_[q];
-    star.normals[star.size++] = area_normal(positions_[v], positions_[p], positions_[q]);
+void CollapsingPiece::Star::add(const Vec3& at, const Vec3& p, const Vec3& q) {
+  center.set(size, at);
+  from.set(size, p);
+  to.set(size, q);
+  ++size;
+}
+
+void CollapsingPiece::Star::fill_row() {
+  for (std::size_t k = size; k % lanes != 0; ++k) {
+    for (Vectors* const vectors : {&center, &from, &to}) {
+      vectors->x[k] = vectors->x[size - 1];
+      vectors->y[k] = vectors->y[size - 1];
+      vectors->z[k] = vectors->z[size - 1];
+    }
   }
+}
+
+void CollapsingPiece::Star::find_normals() {
+  for_lanes(size, [&](std::size_t k) {
+    const float px = from.x[k] - center.x[k], qx = to.x[k] - center.x[k];
+    const float py = from.y[k] - center.y[k], qy = to.y[k] - center.y[k];
+    const float pz = from.z[k] - center.z[k], qz = to.z[k] - center.z[k];
+    normals.x[k] = py * qz - pz * qy;
+    normals.y[k] = pz * qx - px * qz;
+    normals.z[k] = px * qy - py * qx;
+  });
+}
+
+CollapsingPiece::Star CollapsingPiece::star(Index a, Index b) const {
+  Star star;
+  for (const auto& [v, other] : {std::pair(a, b), std::pair(b, a)}) {
+    const Ring& ring = rings_[v];
+    for (std::size_t k = 0; k < ring.size; ++k) {
+      const Index p = ring.around[k], q = ring.around[ring.after(k)];
+      if (p != other && q != other) star.add(positions_[v], positions_[p], positions_[q]);
+    }
+  }
+  star.fill_row();
+  star.find_normals();
+  return star;
 }
 
 /// Where the faces around the edge are touched best, in the sense of least squares, of all places
 /// that keep the volume.
 Vec3 CollapsingPiece::best_place(Index a, Index b, const Star& star) const {
   const Vec3 middle = 0.5f * (positions_[a] + positions_[b]);
-  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
+  // Of each triangle: how far its plane is from the middle, and the products of its normal.
+  alignas(32) std::array<float, Star::most> height, xx, yy, zz, xy, xz, yz;
+  const auto& [nx, ny, nz] = star.normals;
+  for_lanes(star.size, [&](std::size_t k) {
+    height[k] = nx[k] * (star.from.x[k] - middle.x()) +
+                (ny[k] * (star.from.y[k] - middle.y()) + nz[k] * (star.from.z[k] - middle.z()));
+    xx[k] = nx[k] * nx[k], yy[k] = ny[k] * ny[k], zz[k] = nz[k] * nz[k];
+    xy[k] = nx[k] * ny[k], xz[k] = nx[k] * nz[k], yz[k] = ny[k] * nz[k];
+  });
+  std::array<float, 6> products{};
   Vec3 right = Vec3::Zero(), sum = Vec3::Zero();
   float volume = 0;
-  const auto add = [&](const Vec3& normal, const Vec3& point) {
-    const float height = normal.dot(point - middle);
-    squares += normal * normal.transpose();
-    right += normal * height;
+  for (std::size_t k = 0; k < star.size; ++k) {
+    const std::array<float, 6> more{xx[k], yy[k], zz[k], xy[k], xz[k], yz[k]};
+    for (std::size_t i = 0; i < 6; ++i) products[i] += more[i];
+    const Vec3 normal(nx[k], ny[k], nz[k]);
+    right += normal * height[k];
     sum += normal;
-    volume += height;
-  };
-  for (std::size_t k = 0; k < star.size; ++k) add(star.normals[k], star.from[k]);
+    volume += height[k];
+  }
   // The two that go.
   const Ring& ring = rings_[a];
   const std::size_t at = ring.find(b), before = at == 0 ? ring.size - std::size_t{1} : at - 1;
   for (const std::size_t k : {before, at}) {
     const Vec3 &p = positions_[ring.around[k]], &q = positions_[ring.around[ring.after(k)]];
-    add(area_normal(positions_[a], p, q), p);
+    const Vec3 normal = area_normal(positions_[a], p, q);
+    const float far = normal.dot(p - middle);
+    const float x = normal.x(), y = normal.y(), z = normal.z();
+    const std::array<float, 6> more{x * x, y * y, z * z, x * y, x * z, y * z};
+    for (std::size_t i = 0; i < 6; ++i) products[i] += more[i];
+    right += normal * far;
+    sum += normal;
+    volume += far;
   }
+  Eigen::Matrix3f squares;
+  squares << products[0], products[3], products[4],  //
+      products[3], products[1], products[5],         //
+      products[4], products[5], products[2];
   const float trace = squares.trace();
   if (!(trace > 0)) return middle;
   constexpr float pull = 0.01f;  // to the middle, along what is flat
@@ -183,30 +243,39 @@ Vec3 CollapsingPiece::best_place(Index a, Index b, const Star& star) const {
 
 bool CollapsingPiece::keeps_shape(const Star& star, const Vec3& place) const {
   constexpr float least_cosine = 0.7f, least_quality = 0.15f, farthest = 0.15f;
-  for (std::size_t k = 0; k < star.size; ++k) {
-    const Vec3 &p = star.from[k], &q = star.to[k], &before = star.normals[k];
-    const Vec3 after = area_normal(place, p, q);
-    const float cosine = before.dot(after), lengths = before.squaredNorm() * after.squaredNorm();
-    if (!(cosine > 0) || cosine * cosine < least_cosine * least_cosine * lengths) return false;
-    const float to_p = (p - place).squaredNorm(), to_q = (q - place).squaredNorm();
-    if (std::max(to_p, to_q) > longest_ * longest_) return false;
+  const float far = farthest * longest_, longest2 = longest_ * longest_;
+  const auto& [nx, ny, nz] = star.normals;
+  const auto square = [](float x, float y, float z) { return x * x + (y * y + z * z); };
+  std::uint32_t bad = 0;
+  for_lanes(star.size, [&](std::size_t k) {
+    const float px = star.from.x[k] - place.x(), qx = star.to.x[k] - place.x();
+    const float py = star.from.y[k] - place.y(), qy = star.to.y[k] - place.y();
+    const float pz = star.from.z[k] - place.z(), qz = star.to.z[k] - place.z();
+    const float ax = py * qz - pz * qy, ay = pz * qx - px * qz, az = px * qy - py * qx;
+    const float before = square(nx[k], ny[k], nz[k]), after = square(ax, ay, az);
+    const float cosine = nx[k] * ax + (ny[k] * ay + nz[k] * az);
+    const float to_p = square(px, py, pz), to_q = square(qx, qy, qz);
     // An equilateral triangle has the squares of twice its area and of the sum of its sides'
     // squares as 1 to 12.
-    const float sides = to_p + to_q + (p - q).squaredNorm();
-    if (after.squaredNorm() < least_quality * least_quality / 12 * sides * sides) return false;
-    const float height = before.dot(place - p), far = farthest * longest_;
-    if (height * height > far * far * before.squaredNorm()) return false;
-  }
-  return true;
+    const float sides = to_p + to_q +
+                        square(star.from.x[k] - star.to.x[k], star.from.y[k] - star.to.y[k],
+                               star.from.z[k] - star.to.z[k]);
+    const float height = nx[k] * px + (ny[k] * py + nz[k] * pz);
+    const bool turns =
+        !(cosine > 0) | (cosine * cosine < least_cosine * least_cosine * (before * after));
+    const bool is_long = std::max(to_p, to_q) > longest2;
+    const bool is_thin = after < least_quality * least_quality / 12 * sides * sides;
+    const bool is_off = height * height > far * far * before;
+    bad |= static_cast<std::uint32_t>(turns | is_long | is_thin | is_off);
+  });
+  return bad == 0;
 }
 
 bool CollapsingPiece::collapse(Index a, Index b) {
   if (!keeps_topology(a, b)) return false;
-  Star star;
-  add_to_star(a, b, star);
-  add_to_star(b, a, star);
-  const Vec3 place = best_place(a, b, star);
-  if (!keeps_shape(star, place)) return false;
+  const Star beside = star(a, b);
+  const Vec3 place = best_place(a, b, beside);
+  if (!keeps_shape(beside, place)) return false;
   positions_[a] = place;
   Ring &at_a = rings_[a], &at_b = rings_[b];
   const std::size_t b_at_a = at_a.find(b), a_at_b = at_b.find(a);

@@ -41,11 +41,23 @@ class CollapsingPiece {
     void remove(Index v);
   };
 
-  /// The triangles beside an edge that are left when it goes: their other corners, in order, and
-  /// their normals, twice as long as their areas.
+  /// The triangles beside an edge that are left when it goes: their corners, `center` being the end
+  /// of the edge, and their normals, twice as long as their areas. All are looked at side by side,
+  /// so that the compiler can use SIMD, in whole rows of lanes: the last triangle comes again to
+  /// fill the last.
   struct Star {
-    std::array<Vec3, 2 * most_neighbors> from, to, normals;
+    static constexpr std::size_t lanes = 8, most = 3 * lanes;
+    static_assert(most >= 2 * most_neighbors);
+    struct Vectors {
+      alignas(4 * lanes) std::array<float, most> x, y, z;
+      void set(std::size_t k, const Vec3& p) { x[k] = p.x(), y[k] = p.y(), z[k] = p.z(); }
+    };
+    Vectors center, from, to, normals;
     std::size_t size = 0;
+
+    void add(const Vec3& at, const Vec3& p, const Vec3& q);
+    void fill_row();
+    void find_normals();
   };
 
   void find_rings(std::span<const Triangle> triangles);
@@ -56,8 +68,7 @@ class CollapsingPiece {
   std::size_t sweep(float shortest);
   bool collapse(Index a, Index b);
   bool keeps_topology(Index a, Index b) const;
-  /// Puts triangles at v, but for those with `other`, into the star.
-  void add_to_star(Index v, Index other, Star& star) const;
+  Star star(Index a, Index b) const;
   Vec3 best_place(Index a, Index b, const Star& star) const;
   bool keeps_shape(const Star& star, const Vec3& place) const;
 
