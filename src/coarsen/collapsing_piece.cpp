@@ -16,15 +16,6 @@ Vec3 area_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 }  // namespace
 
-/// Calls `body(k)` for all places of so many rows of lanes.
-template <typename Body>
-void for_lanes(std::size_t size, const Body& body) {
-  constexpr std::size_t lanes = 8;
-  for (std::size_t row = 0; row < size; row += lanes) {
-    for (std::size_t lane = 0; lane < lanes; ++lane) body(row + lane);
-  }
-}
-
 void CollapsingPiece::Ring::remove(Index v) {
   const auto end = around.begin() + size;
   std::copy(std::find(around.begin(), end, v) + 1, end, std::find(around.begin(), end, v));
@@ -163,7 +154,7 @@ void CollapsingPiece::Star::fill_row() {
 }
 
 void CollapsingPiece::Star::find_normals() {
-  for_lanes(size, [&](std::size_t k) {
+  for_each([&](std::size_t k) {
     const float px = from.x[k] - center.x[k], qx = to.x[k] - center.x[k];
     const float py = from.y[k] - center.y[k], qy = to.y[k] - center.y[k];
     const float pz = from.z[k] - center.z[k], qz = to.z[k] - center.z[k];
@@ -194,7 +185,7 @@ Vec3 CollapsingPiece::best_place(Index a, Index b, const Star& star) const {
   // Of each triangle: how far its plane is from the middle, and the products of its normal.
   alignas(32) std::array<float, Star::most> height, xx, yy, zz, xy, xz, yz;
   const auto& [nx, ny, nz] = star.normals;
-  for_lanes(star.size, [&](std::size_t k) {
+  star.for_each([&](std::size_t k) {
     height[k] = nx[k] * (star.from.x[k] - middle.x()) +
                 (ny[k] * (star.from.y[k] - middle.y()) + nz[k] * (star.from.z[k] - middle.z()));
     xx[k] = nx[k] * nx[k], yy[k] = ny[k] * ny[k], zz[k] = nz[k] * nz[k];
@@ -247,7 +238,7 @@ bool CollapsingPiece::keeps_shape(const Star& star, const Vec3& place) const {
   const auto& [nx, ny, nz] = star.normals;
   const auto square = [](float x, float y, float z) { return x * x + (y * y + z * z); };
   std::uint32_t bad = 0;
-  for_lanes(star.size, [&](std::size_t k) {
+  star.for_each([&](std::size_t k) {
     const float px = star.from.x[k] - place.x(), qx = star.to.x[k] - place.x();
     const float py = star.from.y[k] - place.y(), qy = star.to.y[k] - place.y();
     const float pz = star.from.z[k] - place.z(), qz = star.to.z[k] - place.z();

@@ -58,6 +58,14 @@ class CollapsingPiece {
     void add(const Vec3& at, const Vec3& p, const Vec3& q);
     void fill_row();
     void find_normals();
+
+    /// Calls `body(k)` for each triangle and what fills the last row.
+    template <typename Body>
+    void for_each(const Body& body) const {
+      for (std::size_t row = 0; row < size; row += lanes) {
+        for (std::size_t lane = 0; lane < lanes; ++lane) body(row + lane);
+      }
+    }
   };
 
   void find_rings(std::span<const Triangle> triangles);
