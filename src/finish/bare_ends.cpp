@@ -16,19 +16,29 @@
 namespace meshgrain {
 namespace {
 
-/// The vertex of the mesh to which none of its neighbours is nearer, on the way from `vertex`.
-Index walk_to_nearest(const Vec3& p, const Mesh& mesh, const VertexFaces& around, Index vertex) {
+/// The vertex nearest to a point among one of the mesh and its neighbours.
+Index nearest_around(const Vec3& p, const Mesh& mesh, const VertexFaces& around, Index vertex) {
   float best = (p - mesh.positions[vertex]).squaredNorm();
-  for (Index from = no_index; from != vertex;) {
-    from = vertex;
-    for (const Index f : around[from]) {
-      for (const Index v : mesh.faces[f]) {
-        const float distance = (p - mesh.positions[v]).squaredNorm();
-        if (distance >= best) continue;
-        best = distance;
-        vertex = v;
-      }
+  for (const Index f : around[vertex]) {
+    for (const Index v : mesh.faces[f]) {
+      const float distance = (p - mesh.positions[v]).squaredNorm();
+      if (distance >= best) continue;
+      best = distance;
+      vertex = v;
     }
+  }
+  return vertex;
+}
+
+/// The one to which none of its neighbours is nearer, on the way from `vertex`, or the first on
+/// this way that will do.
+template <typename WillDo>
+Index walk_to_nearest(const Vec3& p, const Mesh& mesh, const VertexFaces& around, Index vertex,
+                      const WillDo& will_do) {
+  while (!will_do(vertex)) {
+    const Index next = nearest_around(p, mesh, around, vertex);
+    if (next == vertex) break;
+    vertex = next;
   }
   return vertex;
 }
@@ -103,7 +113,7 @@ std::vector<Index> BareEnds::not_reached(const EdgeLength& reach) {
             return true;
           };
           const auto is_reached_from = [&](Index v) {
-            return is_reached(v) || is_reached(walk_to_nearest(p, extraction_.mesh, around_, v));
+            return is_reached(walk_to_nearest(p, extraction_.mesh, around_, v, is_reached));
           };
           // From that of the node before, else from those with the nodes just after and before:
           // near in a space-filling order, near in space.
@@ -133,7 +143,8 @@ void BareEnds::find_ways(const std::vector<Index>& bare) {
   std::vector<std::pair<float, Index>> sources;
   for (const Index i : beside) {
     const Vec3& p = graph_.positions[i];
-    vertex_[i] = walk_to_nearest(p, extraction_.mesh, around_, vertex_[i]);
+    vertex_[i] =
+        walk_to_nearest(p, extraction_.mesh, around_, vertex_[i], [](Index) { return false; });
     length_[i] = (p - extraction_.mesh.positions[vertex_[i]]).norm();
     sources.push_back({length_[i], i});
   }
