@@ -132,6 +132,36 @@ TEST(Clean, RemovesDuplicateFacesInAnyRotationAndDirection) {
   EXPECT_EQ(mesh.faces[3][2], 4u);
 }
 
+/// In the order of their lowest corners, as after sorting along a curve, they are found in another
+/// way.
+TEST(Clean, FindsDuplicatesInAnyOrderOfFaces) {
+  Mesh mesh = sample_shape("blob");
+  sort_along_curve(mesh);
+  ASSERT_GT(mesh.faces.size(), 4000u);  // several of the ranges that are looked at in parallel
+  const Faces once = std::exchange(mesh.faces, {});
+  std::size_t more = 0;
+  for (std::size_t f = 0; f < once.size(); ++f) {
+    const auto face = std::as_const(once)[f];
+    mesh.faces.push_back(face);
+    if (f % 7 > 0) continue;
+    mesh.faces.push_back(std::array{face[1], face[2], face[0]});
+    ++more;
+  }
+  Mesh shuffled = mesh;
+  shuffled.faces = {};
+  constexpr std::size_t stride = 7919;  // a prime
+  ASSERT_NE(mesh.faces.size() % stride, 0u);
+  for (std::size_t k = 0; k < mesh.faces.size(); ++k) {
+    shuffled.faces.push_back(std::as_const(mesh.faces)[k * stride % mesh.faces.size()]);
+  }
+  for (Mesh* const with_duplicates : {&mesh, &shuffled}) {
+    EXPECT_EQ(clean(*with_duplicates).duplicate_faces, more);
+    EXPECT_EQ(with_duplicates->faces.size(), once.size());
+    EXPECT_TRUE(rim_edges(*with_duplicates).empty());
+  }
+  EXPECT_TRUE(std::ranges::equal(mesh.faces.corners(), once.corners()));
+}
+
 TEST(Clean, AttributesFollowTheirVertices) {
   Mesh mesh = vertices(6);
   mesh.faces.push_back({1, 3, 5});
