@@ -162,6 +162,22 @@ TEST(Clean, FindsDuplicatesInAnyOrderOfFaces) {
   EXPECT_TRUE(std::ranges::equal(mesh.faces.corners(), once.corners()));
 }
 
+/// Ranges are looked at in parallel: a pair may lie on both sides of where they meet.
+TEST(Clean, FindsTheOnlyDuplicateWhereverItIs) {
+  Mesh mesh = sample_shape("blob");
+  sort_along_curve(mesh);
+  for (std::size_t place = 1000; place < 1050; ++place) {
+    Mesh with_one = mesh;
+    with_one.faces = {};
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+      const auto face = std::as_const(mesh.faces)[f];
+      with_one.faces.push_back(face);
+      if (f == place) with_one.faces.push_back(std::array{face[1], face[2], face[0]});
+    }
+    EXPECT_EQ(clean(with_one).duplicate_faces, 1u) << place;
+  }
+}
+
 TEST(Clean, AttributesFollowTheirVertices) {
   Mesh mesh = vertices(6);
   mesh.faces.push_back({1, 3, 5});
