@@ -54,14 +54,10 @@ int main(int argc, char** argv) {
   constexpr int failure = 1;
   constexpr int wrong_usage = 2;
 #ifdef MESHGRAIN_AVX2
-  // Before anything that such a processor could not do.
   if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("bmi2")) {
-    std::fputs(
-        "meshgrain: error: this was built for processors with AVX2, which this one has not: build "
-        "it "
-        "with -DMESHGRAIN_AVX2=OFF\n",
-        stderr);
-    return failure;
+    return fail(failure,
+                "this was built for processors with AVX2, which this one has not: build it with "
+                "-DMESHGRAIN_AVX2=OFF");
   }
 #endif
   keep_freed_memory();
