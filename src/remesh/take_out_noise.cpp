@@ -9,7 +9,7 @@ bool take_out_noise(Mesh& triangles, const RemeshOptions& options, double face_s
   if (options.features.creases != Creases::automatic) return false;
   if (options.graph.nodes != GraphNodes::vertices) return false;  // these have no lines
   if (!sharpen_noisy_part(triangles, face_side, context)) return false;
-  notes.push_back(
+  notes.emplace_back(
       "a noisy scan of a mechanical part: its noise was taken out to make its creases sharp");
   return true;
 }
