@@ -62,9 +62,11 @@ void prepare(Pipeline& pipeline, Mesh input) {
 }
 
 void make_mesh(Pipeline& pipeline) {
-  pipeline.position_and_extract();
-  pipeline.smooth_faces();
-  pipeline.untwist_faces();
+  do {
+    pipeline.position_and_extract();
+    pipeline.smooth_faces();
+    pipeline.untwist_faces();
+  } while (pipeline.refine_for_ends());
   pipeline.try_coarser_lattice();
   pipeline.try_less_regular();
   pipeline.note_scraps();

@@ -163,6 +163,22 @@ TEST_F(Models, DoNotPassThroughThemselves) {
 }
 
 /// Creases, corners and ragged borders are followed without any option.
+/// On a lattice twice as coarse as the quads, two of armadillo's fingers are cut off by three sides
+/// of a face at these counts.
+TEST_F(Models, EndsOfLimbsAreReached) {
+  if (!files_.contains("armadillo")) GTEST_SKIP() << "no armadillo among the models";
+  const Mesh input = read_mesh(files_["armadillo"]);
+  for (const std::size_t count : {5000, 6000}) {
+    const Mesh result = remesh_to(input, OutputFaces::quads, count);
+    const MeshStatistics statistics = mesh_statistics(result);
+    EXPECT_LT(surface_distance(input, result, statistics.edge_mean).max, 1.8) << count;
+    EXPECT_GT(statistics.jacobian_min, 0.5) << count;
+    EXPECT_EQ(result.faces.uniform_degree(), 4u);
+    EXPECT_NEAR(static_cast<double>(result.faces.size()), static_cast<double>(count),
+                0.01 * static_cast<double>(count));
+  }
+}
+
 TEST_F(Models, LinesAreKept) {
   int checked = 0;
   for (const char* name : {"fandisk", "stanford-bunny", "suzanne"}) {

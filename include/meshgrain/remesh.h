@@ -47,8 +47,8 @@ struct RemeshOptions {
   /// field has singularities.
   double regularity = 0.5;
   /// Whether pure quads may have a lattice as fine as they are where creases are close to each
-  /// other or limbs thin, so that these may be a single quad wide, or where there are many holes,
-  /// handles or pieces; else every cell becomes four quads.
+  /// other or limbs thin, so that these may be a single quad wide, where there are many holes,
+  /// handles or pieces, or where ends would be missed; else every cell becomes four quads.
   bool fine_lattice = true;
   /// Whether edges of large meshes that are far shorter than the target needs are collapsed first
   /// (not with `fields`).

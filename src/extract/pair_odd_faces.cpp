@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "extract/cheapest_pairs.h"
+#include "util/indices.h"
 
 namespace meshgrain {
 namespace {
@@ -62,7 +63,7 @@ class OddFaces {
   double crossing_cost(Index entry, Index exit) const;
   template <typename Found>
   void search(Index from, Reached& reached, const Found& found) const;
-  std::vector<std::vector<Match>> matches() const;
+  std::vector<std::vector<Match>> matches();
   void join(Index from, Index to);
   bool contract_end(Index end);
   bool take_end(Index end, Index turned_to);
@@ -72,6 +73,9 @@ class OddFaces {
   const Context& context_;
   std::vector<Index> faces_;  // those with an odd number of corners, by some halfedge
   Reached reached_;
+  // Of each halfedge, while nothing changes.
+  enum Known : std::uint8_t { needs_an_edge = 1, is_vanishing = 2 };
+  std::vector<std::uint8_t> known_;
 };
 
 /// And finds the others.
@@ -91,6 +95,7 @@ void OddFaces::cut_even_faces() {
 /// is a triangle, in which none can start, or two edges of a line would meet there and nothing part
 /// them.
 bool OddFaces::needs_edge(Index h) const {
+  if (!known_.empty()) return (known_[h] & needs_an_edge) != 0;
   const Index beyond = PolygonMap::twin(h);
   return repair_.is_hole(beyond) || repair_.line(h) != no_index || map_.degree(beyond) == 3;
 }
@@ -113,6 +118,7 @@ bool OddFaces::takes_triangle(Index h, Index turned_to) const {
 
 /// Whether the edge is one that contract_end() takes away, with the triangle beyond it.
 bool OddFaces::vanishes(Index h) const {
+  if (!known_.empty()) return (known_[h] & is_vanishing) != 0;
   return repair_.may_contract_line(PolygonMap::twin(h));
 }
 
@@ -176,8 +182,17 @@ void OddFaces::search(Index from, Reached& reached, const Found& found) const {
 }
 
 /// Of each odd face, the others that are near, or the border.
-std::vector<std::vector<Match>> OddFaces::matches() const {
+std::vector<std::vector<Match>> OddFaces::matches() {
   constexpr std::size_t enough = 16, grain = 2;
+  // The searches overlap, and nothing changes between them.
+  std::vector<std::uint8_t> known(map_.halfedges(), 0);
+  const auto find_out = [&](Index h) {
+    if (map_.removed(h)) return;
+    known[h] = static_cast<std::uint8_t>((needs_edge(h) ? needs_an_edge : 0) |
+                                         (vanishes(h) ? is_vanishing : 0));
+  };
+  for_indices(known.size(), find_out, context_);
+  known_ = std::move(known);
   std::vector<std::vector<Match>> result(faces_.size());
   std::vector<Index> number(map_.halfedges(), no_index);
   for (Index i = 0; i < faces_.size(); ++i) number[face_of(faces_[i])] = i;
@@ -195,6 +210,7 @@ std::vector<std::vector<Match>> OddFaces::matches() const {
     Reached reached;
     for (auto i = static_cast<Index>(begin); i < end; ++i) look(i, reached);
   });
+  known_.clear();
   return result;
 }
 

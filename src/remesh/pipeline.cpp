@@ -98,12 +98,14 @@ double Pipeline::share_of_holes() const {
                                    context_);
 }
 
+bool Pipeline::may_have_fine_lattice() const {
+  return options_.faces == OutputFaces::quads && !is_cloud_ && nodes_are_vertices_ &&
+         options_.fine_lattice && options_.guides.empty() && options_.fields == nullptr &&
+         borders_.empty();
+}
+
 bool Pipeline::choose_lattice() {
-  const bool free = options_.fine_lattice && options_.guides.empty() &&
-                    options_.fields == nullptr && borders_.empty();
-  if (options_.faces != OutputFaces::quads || is_cloud_ || !nodes_are_vertices_ || !free) {
-    return false;
-  }
+  if (!may_have_fine_lattice()) return false;
   // A cell of the coarse lattice is two faces wide. Which shares was measured.
   const double side = target_.face_side(area_);
   const auto many_abreast = [&](std::span<const std::uint8_t> on_border) {
@@ -111,10 +113,7 @@ bool Pipeline::choose_lattice() {
            share_abreast(features_, on_border, 2 * side) > 0.6;
   };
   has_thin_limbs_ = is_coarse_for_bends();
-  // Among more faces holes are little to see, for twice the time and the memory.
-  constexpr double most_faces = 30000, little = 0.1;
-  const bool any = has_thin_limbs_ ||
-                   (area_ < most_faces * target_.face_area(area_) && share_of_holes() > little);
+  const bool any = has_thin_limbs_ || (has_few_faces() && share_of_holes() > 0.1);  // a little
   if (!any && !many_abreast({})) return false;  // nor are there without the borders
   const auto border = border_edges(surface_, context_);
   // Where more than two faces meet, all of them would have to get the same new vertices.
@@ -126,15 +125,42 @@ bool Pipeline::choose_lattice() {
   return true;
 }
 
+bool Pipeline::has_few_faces() const {
+  constexpr double few = 30000;
+  return area_ < few * target_.face_area(area_);
+}
+
 void Pipeline::refine_for_details() {
-  if (!choose_lattice()) return;
+  if (choose_lattice()) refine_for_lattice();
+}
+
+bool Pipeline::refine_for_lattice() {
   const bool any_split = stage_(
       "subdivide", [&] { return split_long_edges(area_, edge_lengths(surface_, context_)); });
-  if (!any_split) return;
+  if (!any_split) return false;
   stage_("order", [&] { put_in_order(); });
   build_graph();
   find_lines();
   build_levels();
+  return true;
+}
+
+bool Pipeline::refine_for_ends() {
+  // It costs half as many irregular vertices again, which is not for those who want the fewest.
+  const bool may_cost = regularity_ <= RemeshOptions().regularity && options_.smoothing > 0;
+  const bool is_coarse = lattice_faces_ == OutputFaces::quads;
+  if (!may_cost || !is_coarse || !may_have_fine_lattice() || !has_few_faces()) return false;
+  if (!misses_ends()) return false;
+  if (rim_edges(surface_, context_).size() != border_edges(surface_, context_).size()) return false;
+  extraction_ = {};
+  is_split_ = false;
+  aim_at(OutputFaces::quad_dominant);
+  const bool is_new = refine_for_lattice();
+  complete_levels();
+  size_faces();
+  refine_for_sizes();
+  if (is_new) orient();
+  return true;
 }
 
 void Pipeline::size_faces() {

@@ -57,6 +57,9 @@ class Pipeline {
 
   /// Quads that are twisted even then leave the surface.
   void untwist_faces();
+  /// Where ends of the surface are missed all the same, the lattice becomes as fine as the quads.
+  /// Returns whether it did: the faces are to be made once more, then.
+  bool refine_for_ends();
   /// Where refine_for_details() leaves inverted quads all the same, what there would be without it:
   /// that is kept if it has fewer of these and of crossings together.
   void try_coarser_lattice();
@@ -108,8 +111,16 @@ class Pipeline {
   /// Whether there are few faces for how much the surface bends.
   bool is_coarse_for_bends() const;
   double share_of_holes() const;  // of the faces wanted
+  /// The lattice may be as fine as the quads.
+  bool may_have_fine_lattice() const;
+  /// Among more faces holes and ends are little to see, for twice the time and the memory.
+  bool has_few_faces() const;
   /// Returns whether the lattice is finer now.
   bool choose_lattice();
+  /// The surface, for the lattice that was chosen. Returns whether it is another one now.
+  bool refine_for_lattice();
+  /// Whether fingers, horns or ears stick out of the faces by far.
+  bool misses_ends() const;
   FeatureOptions feature_options() const;
   /// Those longer than the target allows. Returns whether there are any.
   bool split_long_edges(double area, const EdgeLengths& edges);

@@ -10,6 +10,7 @@
 #include "extract/remove_strips.h"
 #include "extract/single_faces.h"
 #include "field/transfer.h"
+#include "finish/bare_ends.h"
 #include "finish/crossings.h"
 #include "finish/face_shape.h"
 #include "finish/smooth.h"
@@ -289,6 +290,17 @@ std::size_t Pipeline::inverted_faces() const {
 
 std::size_t Pipeline::faults() const {
   return inverted_faces() + find_crossings(extraction_.mesh, context_).size();
+}
+
+bool Pipeline::misses_ends() const {
+  // In sides of a face, which are half as long as those of the lattice.
+  constexpr float far = 1.5f, very_far = 2;
+  const VertexFaces around = vertex_faces(extraction_.mesh, context_);
+  const auto count = [&](float sides) {
+    return find_bare_ends(extraction_, around, graph(), scaled(lengths_, sides / 2), context_)
+        .size();
+  };
+  return count(far) > 1 || count(very_far) > 0;
 }
 
 void Pipeline::try_coarser_lattice() {
