@@ -67,6 +67,7 @@ void make_mesh(Pipeline& pipeline) {
     pipeline.smooth_faces();
     pipeline.untwist_faces();
   } while (pipeline.refine_for_ends());
+  pipeline.try_other_starts();
   pipeline.try_coarser_lattice();
   pipeline.try_less_regular();
   pipeline.note_scraps();

@@ -147,10 +147,10 @@ bool Pipeline::refine_for_lattice() {
 
 bool Pipeline::refine_for_ends() {
   // It costs half as many irregular vertices again, which is not for those who want the fewest.
-  const bool may_cost = regularity_ <= RemeshOptions().regularity && options_.smoothing > 0;
+  const bool may_cost = regularity_ <= RemeshOptions().regularity;
   const bool is_coarse = lattice_faces_ == OutputFaces::quads;
-  if (!may_cost || !is_coarse || !may_have_fine_lattice() || !has_few_faces()) return false;
-  if (!misses_ends()) return false;
+  if (!may_cost || !is_coarse || !may_have_fine_lattice() || !may_look_for_ends()) return false;
+  if (missed_ends() < many_missed_ends) return false;
   if (rim_edges(surface_, context_).size() != border_edges(surface_, context_).size()) return false;
   extraction_ = {};
   is_split_ = false;
@@ -310,6 +310,7 @@ void Pipeline::aim_at(OutputFaces lattice_faces) {
 
 void Pipeline::change_target(const RemeshOptions& options) {
   wanted_ = options;
+  other_starts_ = 0;
   aim_at(options.faces);
   find_lines();
   choose_lattice();

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "border/border_loops.h"
@@ -60,6 +62,8 @@ class Pipeline {
   /// Where ends of the surface are missed all the same, the lattice becomes as fine as the quads.
   /// Returns whether it did: the faces are to be made once more, then.
   bool refine_for_ends();
+  /// Where ends are missed even then, lattices that start elsewhere.
+  void try_other_starts();
   /// Where refine_for_details() leaves inverted quads all the same, what there would be without it:
   /// that is kept if it has fewer of these and of crossings together.
   void try_coarser_lattice();
@@ -102,8 +106,8 @@ class Pipeline {
   /// Inverted faces, and pairs that pass through each other.
   std::size_t faults() const;
   /// Makes the faces once more, as all is now. Keeps what was before, and returns false, unless
-  /// there are fewer faults than `too_many`.
-  bool try_again(std::size_t too_many);
+  /// these are better.
+  bool try_again(const std::function<bool()>& is_better);
 
   /// position_and_extract(), but there may be no faces.
   void find_faces();
@@ -119,8 +123,10 @@ class Pipeline {
   bool choose_lattice();
   /// The surface, for the lattice that was chosen. Returns whether it is another one now.
   bool refine_for_lattice();
-  /// Whether fingers, horns or ears stick out of the faces by far.
-  bool misses_ends() const;
+  /// Fingers, horns and ears that stick out of the faces by far, those that do by very far twice.
+  std::size_t missed_ends() const;
+  static constexpr std::size_t many_missed_ends = 2;
+  bool may_look_for_ends() const;
   FeatureOptions feature_options() const;
   /// Those longer than the target allows. Returns whether there are any.
   bool split_long_edges(double area, const EdgeLengths& edges);
@@ -175,6 +181,7 @@ class Pipeline {
   bool has_thin_limbs_ = false;     // for its faces, see is_coarse_for_bends()
   RemeshOptions wanted_;            // what the target goes by
   double regularity_;               // that is aimed at
+  std::uint64_t other_starts_ = 0;  // of positions, that were tried
   std::size_t clean_vertices_ = 0;  // of the input, without what clean_up() takes out
   bool is_in_order_ = false;        // the surface, since it was read
   bool is_sharpened_ = false;

@@ -176,6 +176,7 @@ double Pipeline::count_to_aim_at() const {
 PositionField Pipeline::solve_positions() {
   PositionOptions position;
   static_cast<SolverOptions&>(position) = options_.solver;
+  position.seed += other_starts_;
   position.posy = posy_of(options_.faces);
   position.energy = options_.position_energy;
   const auto solver = PositionSolver::create(hierarchy_, fields().orientation, lengths_, position,
@@ -292,15 +293,32 @@ std::size_t Pipeline::faults() const {
   return inverted_faces() + find_crossings(extraction_.mesh, context_).size();
 }
 
-bool Pipeline::misses_ends() const {
-  // In sides of a face, which are half as long as those of the lattice.
-  constexpr float far = 1.5f, very_far = 2;
+std::size_t Pipeline::missed_ends() const {
+  const float side = lattice_faces_ == OutputFaces::quads ? 0.5f : 1;  // of an edge of the lattice
   const VertexFaces around = vertex_faces(extraction_.mesh, context_);
-  const auto count = [&](float sides) {
-    return find_bare_ends(extraction_, around, graph(), scaled(lengths_, sides / 2), context_)
-        .size();
-  };
-  return count(far) > 1 || count(very_far) > 0;
+  std::size_t count = 0;
+  for (const float sides : {1.5f, 2.0f}) {
+    count += find_bare_ends(extraction_, around, graph(), scaled(lengths_, sides * side), context_)
+                 .size();
+  }
+  return count;
+}
+
+bool Pipeline::may_look_for_ends() const {
+  return !is_cloud_ && nodes_are_vertices_ && options_.smoothing > 0 && has_few_faces() &&
+         !has_given_positions(options_);
+}
+
+void Pipeline::try_other_starts() {
+  if (!may_look_for_ends()) return;
+  constexpr int most = 2;
+  for (int k = 0; k < most; ++k) {
+    const std::size_t missed = missed_ends();
+    if (missed < many_missed_ends) return;
+    const std::size_t before = faults();
+    ++other_starts_;
+    try_again([&] { return missed_ends() < missed && faults() <= before; });
+  }
 }
 
 void Pipeline::try_coarser_lattice() {
@@ -309,7 +327,7 @@ void Pipeline::try_coarser_lattice() {
   if (inverted_faces() == 0 || share_of_holes() > hopeless) return;
   const std::size_t before = faults();
   aim_at(options_.faces);
-  try_again(before);
+  try_again([&] { return faults() < before; });
 }
 
 void Pipeline::try_less_regular() {
@@ -321,7 +339,7 @@ void Pipeline::try_less_regular() {
   for (const double share : {0.5, 0.0}) {
     regularity_ = moderate + share * (options_.regularity - moderate);
     // Where the input passes through itself there are always some.
-    if (!try_again(before / 2)) continue;
+    if (!try_again([&] { return faults() < before / 2; })) continue;
     result_.report.notes.emplace_back(
         "less regular than was asked for: faces would be inverted or pass through each other");
     break;
@@ -329,7 +347,7 @@ void Pipeline::try_less_regular() {
   regularity_ = options_.regularity;
 }
 
-bool Pipeline::try_again(std::size_t too_many) {
+bool Pipeline::try_again(const std::function<bool()>& is_better) {
   Extraction before = std::exchange(extraction_, {});
   PositionField positions = std::exchange(fields().position, {});
   auto energies = std::exchange(result_.report.position_energies, {});
@@ -340,7 +358,7 @@ bool Pipeline::try_again(std::size_t too_many) {
   if (!extraction_.mesh.faces.empty()) {
     smooth_faces();
     untwist_faces();
-    if (faults() < too_many) return true;
+    if (is_better()) return true;
   }
   extraction_ = std::move(before);
   fields().position = std::move(positions);
