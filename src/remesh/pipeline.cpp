@@ -134,15 +134,14 @@ void Pipeline::refine_for_details() {
   if (choose_lattice()) refine_for_lattice();
 }
 
-bool Pipeline::refine_for_lattice() {
+void Pipeline::refine_for_lattice() {
   const bool any_split = stage_(
       "subdivide", [&] { return split_long_edges(area_, edge_lengths(surface_, context_)); });
-  if (!any_split) return false;
+  if (!any_split) return;
   stage_("order", [&] { put_in_order(); });
   build_graph();
   find_lines();
   build_levels();
-  return true;
 }
 
 bool Pipeline::refine_for_ends() {
@@ -155,11 +154,12 @@ bool Pipeline::refine_for_ends() {
   extraction_ = {};
   is_split_ = false;
   aim_at(OutputFaces::quad_dominant);
-  const bool is_new = refine_for_lattice();
+  const std::size_t nodes = graph().size();
+  refine_for_lattice();
   complete_levels();
   size_faces();
   refine_for_sizes();
-  if (is_new) orient();
+  if (graph().size() != nodes) orient();
   return true;
 }
 

@@ -121,11 +121,12 @@ class Pipeline {
   bool has_few_faces() const;
   /// Returns whether the lattice is finer now.
   bool choose_lattice();
-  /// The surface, for the lattice that was chosen. Returns whether it is another one now.
-  bool refine_for_lattice();
+  /// The surface, for the lattice that was chosen.
+  void refine_for_lattice();
   /// Fingers, horns and ears that stick out of the faces by far, those that do by very far twice.
   std::size_t missed_ends() const;
   static constexpr std::size_t many_missed_ends = 2;
+  /// Here they can be found, and are to be seen.
   bool may_look_for_ends() const;
   FeatureOptions feature_options() const;
   /// Those longer than the target allows. Returns whether there are any.

@@ -296,12 +296,13 @@ std::size_t Pipeline::faults() const {
 std::size_t Pipeline::missed_ends() const {
   const float side = lattice_faces_ == OutputFaces::quads ? 0.5f : 1;  // of an edge of the lattice
   const VertexFaces around = vertex_faces(extraction_.mesh, context_);
-  std::size_t count = 0;
-  for (const float sides : {1.5f, 2.0f}) {
-    count += find_bare_ends(extraction_, around, graph(), scaled(lengths_, sides * side), context_)
-                 .size();
-  }
-  return count;
+  const auto count = [&](float sides) {
+    return find_bare_ends(extraction_, around, graph(), scaled(lengths_, sides * side), context_)
+        .size();
+  };
+  constexpr float far = 1.5f, very_far = 2;
+  const std::size_t missed = count(far);
+  return missed > 0 ? missed + count(very_far) : 0;
 }
 
 bool Pipeline::may_look_for_ends() const {
