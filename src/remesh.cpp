@@ -66,8 +66,7 @@ void make_mesh(Pipeline& pipeline) {
     pipeline.position_and_extract();
     pipeline.smooth_faces();
     pipeline.untwist_faces();
-  } while (pipeline.refine_for_ends());
-  pipeline.try_other_starts();
+  } while (pipeline.reach_ends());
   pipeline.try_coarser_lattice();
   pipeline.try_less_regular();
   pipeline.note_scraps();

@@ -194,13 +194,14 @@ Vec3 CollapsingPiece::best_place(Index a, Index b, const Star& star) const {
   std::array<float, 6> products{};
   Vec3 right = Vec3::Zero(), sum = Vec3::Zero();
   float volume = 0;
-  for (std::size_t k = 0; k < star.size; ++k) {
-    const std::array<float, 6> more{xx[k], yy[k], zz[k], xy[k], xz[k], yz[k]};
+  const auto add = [&](const std::array<float, 6>& more, const Vec3& normal, float far) {
     for (std::size_t i = 0; i < 6; ++i) products[i] += more[i];
-    const Vec3 normal(nx[k], ny[k], nz[k]);
-    right += normal * height[k];
+    right += normal * far;
     sum += normal;
-    volume += height[k];
+    volume += far;
+  };
+  for (std::size_t k = 0; k < star.size; ++k) {
+    add({xx[k], yy[k], zz[k], xy[k], xz[k], yz[k]}, Vec3(nx[k], ny[k], nz[k]), height[k]);
   }
   // The two that go.
   const Ring& ring = rings_[a];
@@ -208,13 +209,8 @@ Vec3 CollapsingPiece::best_place(Index a, Index b, const Star& star) const {
   for (const std::size_t k : {before, at}) {
     const Vec3 &p = positions_[ring.around[k]], &q = positions_[ring.around[ring.after(k)]];
     const Vec3 normal = area_normal(positions_[a], p, q);
-    const float far = normal.dot(p - middle);
     const float x = normal.x(), y = normal.y(), z = normal.z();
-    const std::array<float, 6> more{x * x, y * y, z * z, x * y, x * z, y * z};
-    for (std::size_t i = 0; i < 6; ++i) products[i] += more[i];
-    right += normal * far;
-    sum += normal;
-    volume += far;
+    add({x * x, y * y, z * z, x * y, x * z, y * z}, normal, normal.dot(p - middle));
   }
   Eigen::Matrix3f squares;
   squares << products[0], products[3], products[4],  //

@@ -16,6 +16,7 @@
 #include "meshgrain/surface.h"
 #include "util/collect.h"
 #include "util/edge_of.h"
+#include "util/hash.h"
 #include "util/sort_unique.h"
 #include "util/sum.h"
 #include "util/union_find.h"
@@ -95,9 +96,9 @@ bool may_be_equal(std::size_t begin, std::size_t end, std::size_t faces, const A
   std::vector<Index> lowest(count), hashes(count);
   for (std::size_t k = 0; k < count; ++k) {
     const Keyed face = at(begin + k);
-    const std::uint64_t sides = std::uint64_t{face.beside} << 32 | face.other;
     lowest[k] = face.lowest;
-    hashes[k] = static_cast<Index>((sides * 0x9e3779b97f4a7c15u) >> 32) ^ face.lowest;
+    const std::uint64_t sides = std::uint64_t{face.beside} << 32 | face.other;
+    hashes[k] = static_cast<Index>(hash64(sides)) ^ face.lowest;
   }
   unsigned any = 0;
   for (std::size_t apart = 1; apart < few; ++apart) {

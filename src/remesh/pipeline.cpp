@@ -113,11 +113,11 @@ bool Pipeline::choose_lattice() {
            share_abreast(features_, on_border, 2 * side) > 0.6;
   };
   has_thin_limbs_ = is_coarse_for_bends();
-  const bool any = has_thin_limbs_ || (has_few_faces() && share_of_holes() > 0.1);  // a little
+  constexpr double few_holes = 0.1;
+  const bool any = has_thin_limbs_ || (has_few_faces() && share_of_holes() > few_holes);
   if (!any && !many_abreast({})) return false;  // nor are there without the borders
   const auto border = border_edges(surface_, context_);
-  // Where more than two faces meet, all of them would have to get the same new vertices.
-  if (rim_edges(surface_, context_).size() != border.size()) return false;
+  if (has_branches(border.size())) return false;
   std::vector<std::uint8_t> on_border(surface_.positions.size(), 0);
   for (const auto& [a, b] : border) on_border[a] = on_border[b] = 1;
   if (!any && !many_abreast(on_border)) return false;
@@ -144,13 +144,23 @@ void Pipeline::refine_for_lattice() {
   build_levels();
 }
 
-bool Pipeline::refine_for_ends() {
+bool Pipeline::has_branches(std::size_t border_edges) const {
+  return rim_edges(surface_, context_).size() != border_edges;
+}
+
+bool Pipeline::reach_ends() {
+  if (!may_look_for_ends()) return false;
+  const std::size_t missed = missed_ends();
+  constexpr std::size_t many = 2;
+  if (missed < many) return false;
   // It costs half as many irregular vertices again, which is not for those who want the fewest.
   const bool may_cost = regularity_ <= RemeshOptions().regularity;
   const bool is_coarse = lattice_faces_ == OutputFaces::quads;
-  if (!may_cost || !is_coarse || !may_have_fine_lattice() || !may_look_for_ends()) return false;
-  if (missed_ends() < many_missed_ends) return false;
-  if (rim_edges(surface_, context_).size() != border_edges(surface_, context_).size()) return false;
+  if (!may_cost || !is_coarse || !may_have_fine_lattice() ||
+      has_branches(border_edges(surface_, context_).size())) {
+    try_other_starts(missed, many);
+    return false;
+  }
   extraction_ = {};
   is_split_ = false;
   aim_at(OutputFaces::quad_dominant);
@@ -310,7 +320,7 @@ void Pipeline::aim_at(OutputFaces lattice_faces) {
 
 void Pipeline::change_target(const RemeshOptions& options) {
   wanted_ = options;
-  other_starts_ = 0;
+  other_start_ = 0;
   aim_at(options.faces);
   find_lines();
   choose_lattice();

@@ -59,11 +59,10 @@ class Pipeline {
 
   /// Quads that are twisted even then leave the surface.
   void untwist_faces();
-  /// Where ends of the surface are missed all the same, the lattice becomes as fine as the quads.
-  /// Returns whether it did: the faces are to be made once more, then.
-  bool refine_for_ends();
-  /// Where ends are missed even then, lattices that start elsewhere.
-  void try_other_starts();
+  /// Where ends of the surface are missed all the same, the lattice of pure quads becomes as fine
+  /// as these. Returns whether it did: the faces are to be made once more, then. Else lattices that
+  /// start elsewhere are tried.
+  bool reach_ends();
   /// Where refine_for_details() leaves inverted quads all the same, what there would be without it:
   /// that is kept if it has fewer of these and of crossings together.
   void try_coarser_lattice();
@@ -119,13 +118,16 @@ class Pipeline {
   bool may_have_fine_lattice() const;
   /// Among more faces holes and ends are little to see, for twice the time and the memory.
   bool has_few_faces() const;
+  /// Edges between more than two faces: all of these would have to get the same new vertices.
+  bool has_branches(std::size_t border_edges) const;
   /// Returns whether the lattice is finer now.
   bool choose_lattice();
   /// The surface, for the lattice that was chosen.
   void refine_for_lattice();
   /// Fingers, horns and ears that stick out of the faces by far, those that do by very far twice.
   std::size_t missed_ends() const;
-  static constexpr std::size_t many_missed_ends = 2;
+  /// Until fewer than `many` of the ends are missed, which `missed` are now.
+  void try_other_starts(std::size_t missed, std::size_t many);
   /// Here they can be found, and are to be seen.
   bool may_look_for_ends() const;
   FeatureOptions feature_options() const;
@@ -182,7 +184,7 @@ class Pipeline {
   bool has_thin_limbs_ = false;     // for its faces, see is_coarse_for_bends()
   RemeshOptions wanted_;            // what the target goes by
   double regularity_;               // that is aimed at
-  std::uint64_t other_starts_ = 0;  // of positions, that were tried
+  std::uint64_t other_start_ = 0;   // of positions; 0 for the usual one
   std::size_t clean_vertices_ = 0;  // of the input, without what clean_up() takes out
   bool is_in_order_ = false;        // the surface, since it was read
   bool is_sharpened_ = false;

@@ -176,7 +176,7 @@ double Pipeline::count_to_aim_at() const {
 PositionField Pipeline::solve_positions() {
   PositionOptions position;
   static_cast<SolverOptions&>(position) = options_.solver;
-  position.seed += other_starts_;
+  position.seed += other_start_;
   position.posy = posy_of(options_.faces);
   position.energy = options_.position_energy;
   const auto solver = PositionSolver::create(hierarchy_, fields().orientation, lengths_, position,
@@ -310,15 +310,21 @@ bool Pipeline::may_look_for_ends() const {
          !has_given_positions(options_);
 }
 
-void Pipeline::try_other_starts() {
-  if (!may_look_for_ends()) return;
-  constexpr int most = 2;
-  for (int k = 0; k < most; ++k) {
-    const std::size_t missed = missed_ends();
-    if (missed < many_missed_ends) return;
+void Pipeline::try_other_starts(std::size_t missed, std::size_t many) {
+  constexpr std::uint64_t most = 2;
+  for (std::uint64_t start = 1; start <= most && missed >= many; ++start) {
     const std::size_t before = faults();
-    ++other_starts_;
-    try_again([&] { return missed_ends() < missed && faults() <= before; });
+    const std::uint64_t kept = std::exchange(other_start_, start);
+    std::size_t now = missed;
+    const auto is_better = [&] {
+      now = missed_ends();
+      return now < missed && faults() <= before;
+    };
+    if (try_again(is_better)) {
+      missed = now;
+    } else {
+      other_start_ = kept;
+    }
   }
 }
 

@@ -33,7 +33,7 @@ std::vector<std::uint8_t> picked(const std::vector<std::uint8_t>& flags,
 }  // namespace
 
 void Pipeline::clean_up(Mesh input) {
-  // What is read comes in any order; all that looks at neighbors is quicker with these nearby.
+  // What is read comes in any order; all that looks at neighbours is quicker with these nearby.
   constexpr std::size_t many = 1 << 16;
   if (input.positions.size() > many && input.faces.uniform_degree() >= 3 && !is_torn(input)) {
     stage_("order", [&] { sort_along_curve(input, context_); });
