@@ -173,7 +173,7 @@ class FaceRepair {
     int squares = 0;  // of what the vertices then have too many edges or too few: how many more
     Index first = no_index, last = no_index;
     /// What is larger for a better one.
-    auto worth() const { return std::tuple(gain, -squares); }
+    constexpr auto worth() const { return std::tuple(gain, -squares); }
   };
   bool may_open(Index vertex) const;
   /// The best one that starts at `first`, if any gains `least` or more.
@@ -194,8 +194,9 @@ class FaceRepair {
     return (clusters_.positions[a] - clusters_.positions[b]).norm();
   }
   /// Applies the change with the greatest gain `count` times, of several the one of the least cost.
-  template <typename Gain, typename Cost, typename Apply>
-  std::size_t change_best(std::size_t count, const Gain& gain, const Cost& cost,
+  /// `gain` may say nothing where it is less than `least`, which at first is less than any.
+  template <typename Worth, typename Gain, typename Cost, typename Apply>
+  std::size_t change_best(std::size_t count, const Worth& least, const Gain& gain, const Cost& cost,
                           const Apply& apply);
   int flip_gain(Index h) const;
   double chord_cost(std::span<const Index> orbit, std::size_t from) const;
@@ -216,30 +217,31 @@ class FaceRepair {
   LinkCondition link_;
 };
 
-template <typename Gain, typename Cost, typename Apply>
-std::size_t FaceRepair::change_best(std::size_t count, const Gain& gain, const Cost& cost,
-                                    const Apply& apply) {
-  using Worth = std::remove_cvref_t<decltype(*gain(Index{}))>;
+template <typename Worth, typename Gain, typename Cost, typename Apply>
+std::size_t FaceRepair::change_best(std::size_t count, const Worth& least, const Gain& gain,
+                                    const Cost& cost, const Apply& apply) {
   struct Candidate {
-    Worth gain;
     float cost;
     Index h;
   };
   std::size_t done = 0;
   while (done < count) {
-    std::vector<Candidate> candidates;
+    Worth best = least;
+    std::vector<Candidate> candidates;  // with that gain
     for (Index h = 0; h < map_.halfedges(); ++h) {
-      if (const std::optional<Worth> g = gain(h)) candidates.push_back({*g, cost(h), h});
+      const std::optional<Worth> found = gain(h, best);
+      if (!found || *found < best) continue;
+      if (best < *found) candidates.clear();
+      best = *found;
+      candidates.push_back({cost(h), h});
     }
-    if (candidates.empty()) break;
     std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-      return std::tie(b.gain, a.cost, a.h) < std::tie(a.gain, b.cost, b.h);
+      return std::tie(a.cost, a.h) < std::tie(b.cost, b.h);
     });
-    const auto best = candidates.front().gain;
     const std::size_t before = done;
     for (const Candidate& c : candidates) {
-      if (c.gain < best || done == count) break;
-      if (gain(c.h) != best) continue;  // what lies beside it has changed
+      if (done == count) break;
+      if (gain(c.h, best) != best) continue;  // what lies beside it has changed
       apply(c.h);
       ++done;
       if (best < Worth{}) break;  // beside what that left it may cost less

@@ -396,24 +396,27 @@ void FaceRepair::open_vertices() {
 }
 
 std::size_t FaceRepair::open_vertices(std::size_t count) {
-  const auto opening = [&](Index h) -> std::optional<Opening> {
+  constexpr Opening none{.gain = std::numeric_limits<int>::min()};
+  const auto opening = [&](Index h, int least) -> std::optional<Opening> {
     if (map_.removed(h) || !may_open(map_.origin(h))) return std::nullopt;
-    return opening_from(h, std::numeric_limits<int>::min());
+    return opening_from(h, least);
   };
+  const auto any = [&](Index h) { return *opening(h, none.gain); };
   return change_best(
-      count,
-      [&](Index h) {
-        const std::optional<Opening> best = opening(h);
+      count, none.worth(),
+      [&](Index h, const auto& least) {
+        const std::optional<Opening> best = opening(h, std::get<0>(least));
         return best ? std::optional(best->worth()) : std::nullopt;
       },
       // Where there is most room.
-      [&](Index h) { return -distance(map_.target(h), map_.target(opening(h)->last)); },
-      [&](Index h) { open(*opening(h)); });
+      [&](Index h) { return -distance(map_.target(h), map_.target(any(h).last)); },
+      [&](Index h) { open(any(h)); });
 }
 
 std::size_t FaceRepair::close_quads(std::size_t count) {
   return change_best(
-      count, [&](Index h) { return closing_gain(h, std::numeric_limits<int>::min()); },
+      count, std::numeric_limits<int>::min(),
+      [&](Index h, int least) { return closing_gain(h, least); },
       [&](Index h) { return distance(map_.origin(h), map_.target(map_.next(h))); },
       [&](Index h) { close_quad(h); });
 }

@@ -1,5 +1,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <limits>
 #include <numbers>
 
 #include "extract/face_repair.h"
@@ -98,7 +99,7 @@ std::optional<int> FaceRepair::contraction_gain(Index h) {
 
 std::size_t FaceRepair::contract_edges(std::size_t count, const Context& context) {
   const std::size_t done = change_best(
-      count, [&](Index h) { return contraction_gain(h); },
+      count, std::numeric_limits<int>::min(), [&](Index h, int) { return contraction_gain(h); },
       [&](Index h) { return distance(map_.origin(h), map_.target(h)); },
       [&](Index h) {
         const Index a = map_.origin(h), b = map_.target(h);
