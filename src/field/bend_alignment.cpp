@@ -113,7 +113,10 @@ std::vector<OrientationConstraint> bend_constraints(const Hierarchy& hierarchy, 
                                                     const FeatureLines& creases, float edge_length,
                                                     float strength, const Context& context) {
   if (!(strength > 0) || !are_vertices(hierarchy, surface)) return {};
-  std::size_t level = level_of_area(hierarchy, edge_length * edge_length);
+  // The patches of a level are up to twice as large; larger than a face, they go, with those around
+  // them, all around a tube, and do not tell its axis.
+  constexpr double share = 0.65;  // of a face
+  std::size_t level = level_of_area(hierarchy, share * edge_length * edge_length);
   std::vector<BendPatch> patches =
       ring_patches(hierarchy, level, surface, around, creases, context);
   if (patches.empty()) return {};

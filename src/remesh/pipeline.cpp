@@ -149,16 +149,14 @@ bool Pipeline::has_branches(std::size_t border_edges) const {
 }
 
 bool Pipeline::reach_ends() {
-  if (!may_look_for_ends()) return false;
+  if (!may_make_others()) return false;
   const std::size_t missed = missed_ends();
-  constexpr std::size_t many = 2;
-  if (missed < many) return false;
   // It costs half as many irregular vertices again, which is not for those who want the fewest.
   const bool may_cost = regularity_ <= RemeshOptions().regularity;
   const bool is_coarse = lattice_faces_ == OutputFaces::quads;
-  if (!may_cost || !is_coarse || !may_have_fine_lattice() ||
+  if (missed < many_ends || !may_cost || !is_coarse || !may_have_fine_lattice() ||
       has_branches(border_edges(surface_, context_).size())) {
-    try_other_starts(missed, many);
+    try_other_starts(missed);
     return false;
   }
   extraction_ = {};
@@ -236,12 +234,14 @@ bool Pipeline::fit_lengths_to_borders(double more_faces) {
 
 void Pipeline::refine_for_sizes() {
   if (is_cloud_ || splits_only_once(options_) || lengths_.uniform()) return;
-  std::vector<float> longest = scaled(lengths_, 0.5).values;
+  const double share = target_.longest_edge();
+  std::vector<float> longest = scaled(lengths_, share).values;
   if (!stage_("subdivide", [&] { return subdivide(surface_, longest, context_); })) return;
   stage_("order", [&] {
     const std::vector<Index> order = put_in_order();
     lengths_.values.resize(order.size());
-    for (std::size_t i = 0; i < order.size(); ++i) lengths_.values[i] = 2 * longest[order[i]];
+    for (std::size_t i = 0; i < order.size(); ++i) lengths_.values[i] = longest[order[i]];
+    lengths_ = scaled(lengths_, 1 / share);
   });
   build_graph();
   find_lines();
@@ -258,6 +258,7 @@ void Pipeline::orient() {
     }
     OrientationOptions orientation;
     static_cast<SolverOptions&>(orientation) = options_.solver;
+    orientation.seed += other_start_;
     orientation.rosy = options_.rosy != 0 ? options_.rosy : posy_of(options_.faces);
     orientation.energy = options_.orientation_energy;
     const auto edge_length = static_cast<float>(mean_length());

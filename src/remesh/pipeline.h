@@ -61,7 +61,7 @@ class Pipeline {
   void untwist_faces();
   /// Where ends of the surface are missed all the same, the lattice of pure quads becomes as fine
   /// as these. Returns whether it did: the faces are to be made once more, then. Else lattices that
-  /// start elsewhere are tried.
+  /// start elsewhere are tried where ends are missed, or quads are nearly flat.
   bool reach_ends();
   /// Where refine_for_details() leaves inverted quads all the same, what there would be without it:
   /// that is kept if it has fewer of these and of crossings together.
@@ -124,12 +124,17 @@ class Pipeline {
   bool choose_lattice();
   /// The surface, for the lattice that was chosen.
   void refine_for_lattice();
-  /// Fingers, horns and ears that stick out of the faces by far, those that do by very far twice.
+  /// Fingers, horns and ears that stick out of the faces by far, those that do by very far twice;
+  /// none where they cannot be told.
   std::size_t missed_ends() const;
-  /// Until fewer than `many` of the ends are missed, which `missed` are now.
-  void try_other_starts(std::size_t missed, std::size_t many);
-  /// Here they can be found, and are to be seen.
-  bool may_look_for_ends() const;
+  /// So many are not left alone.
+  static constexpr std::size_t many_ends = 2;
+  /// The least scaled Jacobian of the quads.
+  float least_jacobian() const;
+  /// Until fewer than many_ends are missed, which `missed` are now, and no quad is nearly flat.
+  void try_other_starts(std::size_t missed);
+  /// Whether what is wrong with the faces is to be seen, and other ones would not take too long.
+  bool may_make_others() const;
   FeatureOptions feature_options() const;
   /// Those longer than the target allows. Returns whether there are any.
   bool split_long_edges(double area, const EdgeLengths& edges);
@@ -184,7 +189,7 @@ class Pipeline {
   bool has_thin_limbs_ = false;     // for its faces, see is_coarse_for_bends()
   RemeshOptions wanted_;            // what the target goes by
   double regularity_;               // that is aimed at
-  std::uint64_t other_start_ = 0;   // of positions; 0 for the usual one
+  std::uint64_t other_start_ = 0;   // of both fields; 0 for the usual one
   std::size_t clean_vertices_ = 0;  // of the input, without what clean_up() takes out
   bool is_in_order_ = false;        // the surface, since it was read
   bool is_sharpened_ = false;

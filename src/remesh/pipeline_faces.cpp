@@ -294,6 +294,7 @@ std::size_t Pipeline::faults() const {
 }
 
 std::size_t Pipeline::missed_ends() const {
+  if (is_cloud_ || !nodes_are_vertices_) return 0;
   const float side = lattice_faces_ == OutputFaces::quads ? 0.5f : 1;  // of an edge of the lattice
   const VertexFaces around = vertex_faces(extraction_.mesh, context_);
   const auto count = [&](float sides) {
@@ -305,25 +306,47 @@ std::size_t Pipeline::missed_ends() const {
   return missed > 0 ? missed + count(very_far) : 0;
 }
 
-bool Pipeline::may_look_for_ends() const {
-  return !is_cloud_ && nodes_are_vertices_ && options_.smoothing > 0 && has_few_faces() &&
-         !has_given_positions(options_);
+bool Pipeline::may_make_others() const {
+  return options_.smoothing > 0 && has_few_faces() && !has_given_positions(options_);
 }
 
-void Pipeline::try_other_starts(std::size_t missed, std::size_t many) {
+float Pipeline::least_jacobian() const {
+  float least = 1;
+  const Mesh& mesh = extraction_.mesh;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto face = mesh.faces[f];
+    if (face.size() == 4) least = std::min(least, scaled_jacobian(face, mesh.positions));
+  }
+  return least;
+}
+
+void Pipeline::try_other_starts(std::size_t missed) {
   constexpr std::uint64_t most = 2;
-  for (std::uint64_t start = 1; start <= most && missed >= many; ++start) {
+  constexpr float nearly_flat = 0.1f;  // beyond it a quad is as good as any
+  float least = std::min(least_jacobian(), nearly_flat);
+  for (std::uint64_t start = 1; start <= most; ++start) {
+    if (missed < many_ends && least == nearly_flat) return;
     const std::size_t before = faults();
     const std::uint64_t kept = std::exchange(other_start_, start);
-    std::size_t now = missed;
+    OrientationField orientation = fields().orientation;
+    auto energies = result_.report.orientation_energies;
+    complete_levels();
+    orient();
+    std::size_t missed_now = missed;
+    float least_now = least;
     const auto is_better = [&] {
-      now = missed_ends();
-      return now < missed && faults() <= before;
+      missed_now = missed_ends();
+      least_now = std::min(least_jacobian(), nearly_flat);
+      return missed_now <= missed && least_now >= least &&
+             (missed_now < missed || least_now > least) && faults() <= before;
     };
     if (try_again(is_better)) {
-      missed = now;
+      missed = missed_now;
+      least = least_now;
     } else {
       other_start_ = kept;
+      fields().orientation = std::move(orientation);
+      result_.report.orientation_energies = std::move(energies);
     }
   }
 }

@@ -36,6 +36,9 @@ class Target {
   /// triangles that hexagons are dual to.
   double face_side(double area) const;
 
+  /// How long edges of the surface may be that the fields live on, in edges of the lattice.
+  double longest_edge() const;
+
   /// How long edges of the input may be, if the surface has this area and its edges this mean
   /// length: longer ones are split. Where faces vary in size, and nothing can be split later on,
   /// fine enough for the smallest.
