@@ -69,6 +69,7 @@ void make_mesh(Pipeline& pipeline) {
   } while (pipeline.reach_ends());
   pipeline.try_coarser_lattice();
   pipeline.try_less_regular();
+  pipeline.untie_knots();
   pipeline.note_scraps();
   pipeline.report_fields();
 }

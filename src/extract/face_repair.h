@@ -71,11 +71,16 @@ class FaceRepair {
   /// Merges the corner opposite to the origin of h into that, which stays where it is if anything
   /// holds it.
   void close_quad(Index h);
+  /// Whether that can be done without a change of the topology, the borders or the lines.
+  bool may_close(Index h) const;
   /// For what halfedges that can be done to a face or to those beside it, without a change of the
   /// topology, the borders or the lines: where the two are nearest to each other first. Vertices
   /// with two edges may be left, see remove_doublets().
   std::vector<Index> ways_to_close(Index face) const;
 
+  /// Whether an edge between two quads can be turned within them: taken away, and put between two
+  /// other corners, `from` and `from` + 3 of union_halfedges().
+  bool may_turn(Index h, int from) const;
   /// How edges of a quad can be turned within it and the quad beyond.
   std::vector<EdgeChange> ways_to_turn(Index face) const;
   /// The corners of the two quads that this leaves.
@@ -185,7 +190,6 @@ class FaceRepair {
   /// Whether the origin of h and the corner opposite to it in their quad have nothing in common but
   /// that; else other faces would come to touch themselves if the two became one.
   bool are_apart(Index h) const;
-  bool may_close(Index h) const;
   /// Whether a vertex may go anywhere.
   bool is_loose(Index vertex) const {
     return !clusters_.on_border[vertex] && clusters_.hold[vertex] == free_vertex;

@@ -282,17 +282,19 @@ std::vector<Index> FaceRepair::ways_to_close(Index face) const {
   return result;
 }
 
+bool FaceRepair::may_turn(Index h, int from) const {
+  const Index t = PolygonMap::twin(h);
+  if (hole_[h] || hole_[t] || map_.degree(h) != 4 || map_.degree(t) != 4) return false;
+  if (!may_remove(h) || touches_itself(h)) return false;
+  const std::vector<Index> around = union_halfedges(h);  // the edge was from its corner 3 to 0
+  return !map_.adjacent(map_.origin(around[from]), map_.origin(around[from + 3]));
+}
+
 std::vector<FaceRepair::EdgeChange> FaceRepair::ways_to_turn(Index face) const {
   std::vector<EdgeChange> ways;
   map_.for_orbit(face, [&](Index h) {
-    const Index t = PolygonMap::twin(h);
-    if (hole_[t] || map_.degree(h) != 4 || map_.degree(t) != 4) return;
-    if (!may_remove(h) || touches_itself(h)) return;
-    const std::vector<Index> around = union_halfedges(h);  // the edge was from its corner 3 to 0
     for (const int from : {1, 2}) {
-      const int to = from + 3;
-      if (map_.adjacent(map_.origin(around[from]), map_.origin(around[to]))) continue;
-      ways.push_back({.h = h, .from = from, .to = to});
+      if (may_turn(h, from)) ways.push_back({.h = h, .from = from, .to = from + 3});
     }
   });
   return ways;

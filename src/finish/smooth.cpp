@@ -377,7 +377,6 @@ void Smoother::fit_faces() {
 }
 
 void Smoother::keep_to_own_side() {
-  if (options_.is_part) return;
   look_up_sizes();
   const PolygonFit fit{mean_side(mesh_, sizes_, context_), 1, sizes_};
   meshgrain::keep_to_own_side(mesh_, around_, placement_, normals_, fit, context_);

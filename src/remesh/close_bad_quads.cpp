@@ -14,9 +14,9 @@
 #include "extract/extraction_map.h"
 #include "extract/face_repair.h"
 #include "extract/piece.h"
-#include "finish/crossings.h"
 #include "finish/face_shape.h"
 #include "finish/smooth.h"
+#include "remesh/change_piece.h"
 
 namespace meshgrain {
 namespace {
@@ -132,21 +132,13 @@ class Closing {
     for (Index v = 0; v < sources.size(); ++v) {
       if (piece.on_rim[v]) sources[v] = v;
     }
-    return keep_if_apart(piece, changed, sources);
+    return keep(piece, changed, sources);
   }
 
-  /// Puts a changed piece in its place, unless more faces pass through each other then.
-  bool keep_if_apart(const Piece& piece, const Extraction& changed,
-                     const std::vector<Index>& sources) {
-    Extraction result = put_back(whole_, piece, changed, sources);
-    const Eigen::AlignedBox3f box = box_of(piece.extraction).merged(box_of(changed));
-    const auto crossings = [&](const Extraction& extraction) {
-      return count_crossings(extraction.mesh, box, context_);
-    };
-    if (crossings(result) > crossings(whole_)) return false;
-    whole_ = std::move(result);
-    any_changed_ = true;
-    return true;
+  bool keep(const Piece& piece, const Extraction& changed, const std::vector<Index>& sources) {
+    const bool kept = keep_if_apart(whole_, piece, changed, sources, context_);
+    any_changed_ = any_changed_ || kept;
+    return kept;
   }
 
   /// How much is wrong with the faces of a piece.
@@ -233,28 +225,10 @@ class Closing {
       smooth(changed, surface_, around_surface_, graph_, smoothing_, context_);
       if (lack(changed) >= before) continue;
 
-      std::vector<Index> sources(changed.mesh.positions.size(), no_index);
-      for (std::size_t v = 0; v < parts.sources.size(); ++v) {
-        const Index source = parts.sources[v];
-        if (vertex[v] != no_index && piece.on_rim[source]) sources[vertex[v]] = source;
-      }
-      if (keep_if_apart(piece, changed, sources)) return true;
+      const auto sources = rim_sources(piece, map, vertex, changed.mesh.positions.size());
+      if (keep(piece, changed, sources)) return true;
     }
     return false;
-  }
-
-  /// Whether no vertex within a piece had to be cut to make a map of it.
-  static bool is_manifold(const Piece& piece, const ExtractionMap& parts) {
-    std::vector<std::uint8_t> seen(piece.vertices.size(), 0);
-    return std::ranges::none_of(parts.sources, [&](Index v) {
-      return !piece.on_rim[v] && std::exchange(seen[v], std::uint8_t{1});
-    });
-  }
-
-  static Eigen::AlignedBox3f box_of(const Extraction& part) {
-    Eigen::AlignedBox3f box;
-    for (const Vec3& p : part.mesh.positions) box.extend(p);
-    return box;
   }
 
   Extraction& whole_;

@@ -12,6 +12,7 @@
 #include "mesh/surface_size.h"
 #include "mesh/vertex_faces.h"
 #include "meshgrain/extract.h"
+#include "meshgrain/finish.h"
 #include "meshgrain/hierarchy.h"
 #include "meshgrain/remesh.h"
 #include "remesh/stages.h"
@@ -69,6 +70,9 @@ class Pipeline {
   /// Where more regularity than by default bends the grid into faults, what there is with half of
   /// the excess, or none: the first is kept that has less than half as many.
   void try_less_regular();
+
+  /// Pure quads: irregular vertices that cancel each other out go.
+  void untie_knots();
 
   /// If there are many pieces smaller than a face.
   void note_scraps();
@@ -160,6 +164,7 @@ class Pipeline {
   /// Into the quads that are written.
   void split(Extraction& extraction) const;
   void finish_borders();
+  SmoothOptions smooth_options() const;
   /// Of the lattice.
   double mean_length() const { return target_.edge_length(area_); }
   double growth() const { return target_.growth(options_.sizing.grading); }

@@ -21,6 +21,7 @@
 #include "remesh/close_bad_quads.h"
 #include "remesh/count_search.h"
 #include "remesh/pipeline.h"
+#include "remesh/untie_knots.h"
 
 namespace meshgrain {
 namespace {
@@ -229,27 +230,32 @@ void Pipeline::split(Extraction& extraction) const {
   if (!borders_.empty()) lock_middles(extraction, borders_, graph());
 }
 
+SmoothOptions Pipeline::smooth_options() const {
+  SmoothOptions smoothing;
+  smoothing.iterations = options_.smoothing;
+  if (has_thin_limbs_) smoothing.slow_start = 12;
+  // The more regular, the more the grid must stretch. Triangles of one size are regular; the
+  // triangles among quads are smaller than these.
+  if (options_.faces == OutputFaces::quads) {
+    smoothing.evenness = 0.61 + 0.12 * regularity_;
+  }
+  if (options_.faces == OutputFaces::triangles) smoothing.evenness = 0.8;
+  if (options_.faces == OutputFaces::quad_dominant) smoothing.evenness = 0.48;
+  const EdgeLength& lengths = result_.fields.position.edge_length;
+  if (!lengths.uniform() && nodes_are_vertices_) smoothing.relative_size = lengths;
+  smoothing.fit = options_.sizing.adaptive;
+  smoothing.corners_stay = !borders_.empty();
+  // Quads at lines are mended by close_bad_quads() first.
+  smoothing.creases_stay = posy_of(options_.faces) == 4;
+  if (!is_cloud_ && nodes_are_vertices_) smoothing.features = &features_;
+  return smoothing;
+}
+
 void Pipeline::smooth_faces() {
   stage_("smoothing", [&] {
     if (lattice_faces_ == OutputFaces::quads && !is_split_) split(extraction_);
     finish_borders();
-    SmoothOptions smoothing;
-    smoothing.iterations = options_.smoothing;
-    if (has_thin_limbs_) smoothing.slow_start = 12;
-    // The more regular, the more the grid must stretch. Triangles of one size are regular; the
-    // triangles among quads are smaller than these.
-    if (options_.faces == OutputFaces::quads) {
-      smoothing.evenness = 0.61 + 0.12 * regularity_;
-    }
-    if (options_.faces == OutputFaces::triangles) smoothing.evenness = 0.8;
-    if (options_.faces == OutputFaces::quad_dominant) smoothing.evenness = 0.48;
-    const EdgeLength& lengths = fields().position.edge_length;
-    if (!lengths.uniform() && nodes_are_vertices_) smoothing.relative_size = lengths;
-    smoothing.fit = options_.sizing.adaptive;
-    smoothing.corners_stay = !borders_.empty();
-    // Quads at lines are mended by close_bad_quads() first.
-    smoothing.creases_stay = posy_of(options_.faces) == 4;
-    if (!is_cloud_ && nodes_are_vertices_) smoothing.features = &features_;
+    SmoothOptions smoothing = smooth_options();
     smooth(extraction_, surface_, around_, graph(), smoothing, context_);
     // What is bad beside vertices that cannot move shows only now.
     if (!borders_.empty() && improve_border_faces(extraction_, options_.faces, context_)) {
@@ -283,6 +289,16 @@ void Pipeline::finish_borders() {
 void Pipeline::untwist_faces() {
   if (options_.smoothing == 0 || posy_of(options_.faces) != 4) return;
   stage_("smoothing", [&] { untwist(extraction_, graph().normals, context_); });
+}
+
+void Pipeline::untie_knots() {
+  if (options_.faces != OutputFaces::quads || !borders_.empty() || !may_make_others()) return;
+  // Shape is what regularity may cost.
+  const auto most_worse = static_cast<float>(1 + regularity_ / 2);
+  stage_("smoothing", [&] {
+    meshgrain::untie_knots(extraction_, surface_, around_, graph(), smooth_options(),
+                           target_.spare_faces(extraction_.mesh), most_worse, context_);
+  });
 }
 
 std::size_t Pipeline::inverted_faces() const {
