@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "border/border_loops.h"
@@ -62,7 +63,8 @@ class Pipeline {
   void untwist_faces();
   /// Where ends of the surface are missed all the same, the lattice of pure quads becomes as fine
   /// as these. Returns whether it did: the faces are to be made once more, then. Else lattices that
-  /// start elsewhere are tried where ends are missed, or quads are nearly flat.
+  /// start elsewhere are tried where ends are missed, quads are nearly flat, or faces pass through
+  /// each other and the surface does not.
   bool reach_ends();
   /// Where refine_for_details() leaves inverted quads all the same, what there would be without it:
   /// that is kept if it has fewer of these and of crossings together.
@@ -135,7 +137,19 @@ class Pipeline {
   static constexpr std::size_t many_ends = 2;
   /// The least scaled Jacobian of the quads.
   float least_jacobian() const;
-  /// Until fewer than many_ends are missed, which `missed` are now, and no quad is nearly flat.
+  /// What other fields may do without.
+  struct Flaws {
+    std::size_t missed_ends = 0;
+    float flatness = 0;  // of the flattest quad, if that is nearly flat
+    std::size_t faults = 0;
+    bool are_fewer_than(const Flaws& other) const;
+  };
+  Flaws flaws(std::size_t missed) const;
+  /// Whether the surface passes through itself.
+  bool surface_crosses();
+  /// Whether they are to be left alone.
+  bool are_few(const Flaws& flaws);
+  /// Until there are few; `missed` ends are now.
   void try_other_starts(std::size_t missed);
   /// Whether what is wrong with the faces is to be seen, and other ones would not take too long.
   bool may_make_others() const;
@@ -201,8 +215,9 @@ class Pipeline {
   bool is_coarsened_ = false;  // its creases are marked since then, and
   bool had_marks_ = false;     // others were before
   Mesh surface_;
-  VertexFaces around_;        // its vertices, once it has a graph
-  SurfaceSize input_size_{};  // of the surface before it is refined
+  std::optional<bool> surface_crosses_;  // itself, once that is asked for
+  VertexFaces around_;                   // its vertices, once it has a graph
+  SurfaceSize input_size_{};             // of the surface before it is refined
   Hierarchy hierarchy_;
   double area_ = 0;
   EdgeLength lengths_;

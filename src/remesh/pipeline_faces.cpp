@@ -336,29 +336,50 @@ float Pipeline::least_jacobian() const {
   return least;
 }
 
+Pipeline::Flaws Pipeline::flaws(std::size_t missed) const {
+  constexpr float nearly_flat = 0.1f;  // beyond it a quad is as good as any
+  return {missed, std::max(0.0f, nearly_flat - least_jacobian()), faults()};
+}
+
+bool Pipeline::Flaws::are_fewer_than(const Flaws& other) const {
+  return missed_ends <= other.missed_ends && flatness <= other.flatness && faults <= other.faults &&
+         (missed_ends < other.missed_ends || flatness < other.flatness || faults < other.faults);
+}
+
+bool Pipeline::surface_crosses() {
+  if (is_cloud_) return true;  // as far as is known
+  if (!surface_crosses_) {
+    constexpr double deep = 0.01;  // sides: rounding makes for less
+    const double least = deep * target_.face_side(area_);
+    surface_crosses_ = std::ranges::any_of(find_crossings(surface_, context_), [&](auto pair) {
+      return penetration(surface_, pair[0], pair[1]) > least;
+    });
+  }
+  return *surface_crosses_;
+}
+
+bool Pipeline::are_few(const Flaws& flaws) {
+  if (flaws.missed_ends >= many_ends || flaws.flatness > 0) return false;
+  // Where the surface passes through itself, so must what covers it.
+  return flaws.faults == 0 || surface_crosses();
+}
+
 void Pipeline::try_other_starts(std::size_t missed) {
   constexpr std::uint64_t most = 2;
-  constexpr float nearly_flat = 0.1f;  // beyond it a quad is as good as any
-  float least = std::min(least_jacobian(), nearly_flat);
-  for (std::uint64_t start = 1; start <= most; ++start) {
-    if (missed < many_ends && least == nearly_flat) return;
-    const std::size_t before = faults();
+  Flaws before = flaws(missed);
+  for (std::uint64_t start = 1; start <= most && !are_few(before); ++start) {
     const std::uint64_t kept = std::exchange(other_start_, start);
     OrientationField orientation = fields().orientation;
     auto energies = result_.report.orientation_energies;
     complete_levels();
     orient();
-    std::size_t missed_now = missed;
-    float least_now = least;
+    Flaws now;
     const auto is_better = [&] {
-      missed_now = missed_ends();
-      least_now = std::min(least_jacobian(), nearly_flat);
-      return missed_now <= missed && least_now >= least &&
-             (missed_now < missed || least_now > least) && faults() <= before;
+      now = flaws(missed_ends());
+      return now.are_fewer_than(before);
     };
     if (try_again(is_better)) {
-      missed = missed_now;
-      least = least_now;
+      before = now;
     } else {
       other_start_ = kept;
       fields().orientation = std::move(orientation);
