@@ -87,10 +87,10 @@ CreaseLengths lengths_without_noise(Mesh& sample, const Context& context) {
 /// Some of the surface tells at once that most scans are no part, and less of it that most
 /// sculptures are none.
 bool is_noisy_part(const Mesh& triangles, const Context& context) {
-  Mesh sample = sample_patches(triangles, 16, 1000, context);
+  Mesh sample = sample_patches(triangles, 32, 500, context);
   if (bends_evenly(sample) || !may_be_noisy(sample, context)) return false;
   constexpr double margin = 0.75;
-  Mesh less = sample_patches(sample, 8, 250, context);
+  Mesh less = sample_patches(sample, 16, 250, context);
   const CreaseLengths hint = lengths_without_noise(less, context);
   if (hint.clear < margin * hint.doubtful) return false;
   const bool is_whole = less.faces.size() == sample.faces.size();
