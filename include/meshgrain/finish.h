@@ -36,7 +36,8 @@ struct SmoothOptions {
   /// surface, towards its ridges and a little off it.
   double fit = 0;
   /// The mesh is only meant to cover a part of the surface, and changes little: no vertex is held
-  /// out at the ends of the surface, and faces that pass through each other are not parted.
+  /// out at the ends of the surface, faces that pass through each other are not parted, and none is
+  /// brought off another side of it.
   bool is_part = false;
   /// Corners stay even where the faces around them are bad.
   bool corners_stay = false;

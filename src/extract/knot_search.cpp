@@ -9,6 +9,7 @@
 
 #include "util/edge_of.h"
 #include "util/hash.h"
+#include "util/sort_unique.h"
 
 namespace meshgrain {
 namespace {
@@ -67,7 +68,8 @@ class KnotSearch {
 
   struct State {
     std::vector<KnotStep> steps;
-    int sum = 0;  // of squares
+    std::vector<int> excess;  // of each vertex
+    int sum = 0;              // of squares
     std::size_t irregular = 0, closed = 0;
     std::uint64_t hash = 0;  // of its edges
     std::unique_ptr<Changed> changed;
@@ -81,7 +83,7 @@ class KnotSearch {
     auto order() const { return std::tuple(sum, state, step.h, step.from); }
   };
 
-  int excess(const PolygonMap& map, Index v) const {
+  int excess_of(const PolygonMap& map, Index v) const {
     return map.leaving(v) == no_index ? 0 : static_cast<int>(map.valence(v)) + beyond_[v];
   }
 
@@ -94,9 +96,10 @@ class KnotSearch {
     state.changed = std::make_unique<Changed>(piece_, steps);
     const PolygonMap& map = state.changed->parts.map;
     for (Index v = 0; v < beyond_.size(); ++v) {
-      const int e = excess(map, v);
-      state.sum += square(e);
-      state.irregular += e != 0;
+      const int excess = excess_of(map, v);
+      state.excess.push_back(excess);
+      state.sum += square(excess);
+      state.irregular += excess != 0;
     }
     for (Index h = 0; h < map.halfedges(); h += 2) {
       if (map.removed(h)) continue;
@@ -128,47 +131,78 @@ class KnotSearch {
 
   /// All steps that change an irregular vertex, and leave none with fewer than three edges.
   void look_around(const State& state, std::size_t number, std::vector<Candidate>& out) const {
-    const auto& [parts, repair] = *state.changed;
-    const PolygonMap& map = parts.map;
-    std::vector<int> excess_of(beyond_.size());
-    for (Index v = 0; v < excess_of.size(); ++v) excess_of[v] = excess(map, v);
-    const auto is_quad = [&, &repair = repair](Index h) {
-      return !repair.is_hole(h) && map.degree(h) == 4;
+    const auto add = [&](int gain, const KnotStep& step) {
+      out.push_back({state.sum + gain, number, step});
     };
-    const auto gain = [&](Index v, int change) {
-      return square(excess_of[v] + change) - square(excess_of[v]);
-    };
-    const auto add = [&](int change, const KnotStep& step) {
-      out.push_back({state.sum + change, number, step});
-    };
-    const Clusters& clusters = parts.clusters;
-    const auto is_loose = [&](Index v) {
-      return !clusters.on_border[v] && clusters.hold[v] == free_vertex;
-    };
-    const bool may_close = state.closed < most_;
-    for (Index h = 0; h < map.halfedges(); ++h) {
-      if (map.removed(h) || !is_quad(h)) continue;
-      const Index across = map.next(map.next(h)), t = PolygonMap::twin(h);
-      const Index a = map.origin(h), b = map.target(h), c = map.origin(across),
-                  d = map.target(across);
-      const bool is_same = across < h && is_loose(a);  // as closing the quad of `across`
-      if (!is_same && is_loose(c) && may_close && excess_of[b] >= 0 && excess_of[d] >= 0 &&
-          any_irregular(excess_of, {a, b, c, d})) {
-        // One vertex has the edges of both, but for two that they share.
-        const int merged =
-            square(excess_of[a] + excess_of[c] + 2) - square(excess_of[a]) - square(excess_of[c]);
-        add(merged + gain(b, -1) + gain(d, -1), {h});
-      }
-      if (h > t || !is_quad(t)) continue;
-      if (excess_of[a] < 0 || excess_of[b] < 0) continue;
-      // The corners of both quads, from the target of h on.
-      const Index beyond = map.next(t);
-      const Index corners[6] = {b, c, d, a, map.target(beyond), map.target(map.next(beyond))};
-      for (const int from : {1, 2}) {
-        const Index p = corners[from], q = corners[from + 3];
-        if (!any_irregular(excess_of, {a, b, p, q})) continue;
-        add(gain(a, -1) + gain(b, -1) + gain(p, 1) + gain(q, 1), {h, from});
-      }
+    for (const Index h : beside_irregular(state)) {
+      if (state.closed < most_) look_at_closing(state, h, add);
+      if (h < PolygonMap::twin(h)) look_at_turns(state, h, add);
+    }
+  }
+
+  /// Both halfedges of all edges of faces with an irregular corner.
+  static std::vector<Index> beside_irregular(const State& state) {
+    const PolygonMap& map = state.changed->parts.map;
+    std::vector<Index> found;
+    for (Index v = 0; v < state.excess.size(); ++v) {
+      if (state.excess[v] == 0) continue;
+      map.for_each_leaving(v, [&](Index face) {
+        if (state.changed->repair.is_hole(face)) return;
+        map.for_orbit(face, [&](Index h) {
+          found.push_back(h);
+          found.push_back(PolygonMap::twin(h));
+        });
+      });
+    }
+    sort_unique(found);
+    return found;
+  }
+
+  static bool is_quad(const State& state, Index h) {
+    return !state.changed->repair.is_hole(h) && state.changed->parts.map.degree(h) == 4;
+  }
+
+  static bool is_loose(const State& state, Index v) {
+    const Clusters& clusters = state.changed->parts.clusters;
+    return !clusters.on_border[v] && clusters.hold[v] == free_vertex;
+  }
+
+  /// By how much the sum grows if a vertex gets so many edges more.
+  static int growth(const State& state, Index v, int more) {
+    return square(state.excess[v] + more) - square(state.excess[v]);
+  }
+
+  template <typename Add>
+  static void look_at_closing(const State& state, Index h, const Add& add) {
+    if (!is_quad(state, h)) return;
+    const PolygonMap& map = state.changed->parts.map;
+    const Index across = map.next(map.next(h));
+    const Index a = map.origin(h), b = map.target(h), c = map.origin(across),
+                d = map.target(across);
+    const bool is_same = across < h && is_loose(state, a);  // as closing the quad of `across`
+    const std::vector<int>& excess = state.excess;
+    if (is_same || !is_loose(state, c) || excess[b] < 0 || excess[d] < 0) return;
+    if (!any_irregular(excess, {a, b, c, d})) return;
+    // One vertex has the edges of both, but for two that they share.
+    const int merged = square(excess[a] + excess[c] + 2) - square(excess[a]) - square(excess[c]);
+    add(merged + growth(state, b, -1) + growth(state, d, -1), {h});
+  }
+
+  template <typename Add>
+  static void look_at_turns(const State& state, Index h, const Add& add) {
+    const PolygonMap& map = state.changed->parts.map;
+    const Index t = PolygonMap::twin(h), a = map.origin(h), b = map.target(h);
+    if (!is_quad(state, h) || !is_quad(state, t)) return;
+    if (state.excess[a] < 0 || state.excess[b] < 0) return;
+    // The corners of both quads, from the target of h on.
+    const Index ahead = map.next(h), beyond = map.next(t);
+    const Index corners[6] = {b, map.target(ahead),  map.target(map.next(ahead)),
+                              a, map.target(beyond), map.target(map.next(beyond))};
+    for (const int from : {1, 2}) {
+      const Index p = corners[from], q = corners[from + 3];
+      if (!any_irregular(state.excess, {a, b, p, q})) continue;
+      add(growth(state, a, -1) + growth(state, b, -1) + growth(state, p, 1) + growth(state, q, 1),
+          {h, from});
     }
   }
 

@@ -419,7 +419,17 @@ void smooth(Extraction& extraction, const Mesh& surface, const VertexFaces& arou
   smoother.iterate(iterations - done, true);
   smoother.mend();
   smoother.fit_faces();
-  smoother.keep_to_own_side();
+  if (!options.is_part) smoother.keep_to_own_side();
+}
+
+void keep_to_own_side(Extraction& extraction, const Mesh& surface,
+                      const VertexFaces& around_surface, const Graph& graph,
+                      const SmoothOptions& options, const Context& context) {
+  const FeatureLines border = border_if_needed(surface, options, context);
+  const FeatureLines& features = options.features != nullptr ? *options.features : border;
+  Smoother(extraction, surface, around_surface, graph, features, options, Smoother::Start::as_it_is,
+           context)
+      .keep_to_own_side();
 }
 
 void mend(Extraction& extraction, const Mesh& surface, const VertexFaces& around_surface,

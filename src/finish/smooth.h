@@ -15,4 +15,10 @@ void smooth(Extraction& extraction, const Mesh& surface, const VertexFaces& arou
 void mend(Extraction& extraction, const Mesh& surface, const VertexFaces& around_surface,
           const Graph& graph, const SmoothOptions& options, const Context& context);
 
+/// The same of the step after that, which smooth() leaves out where the mesh is only a part: faces
+/// over thin parts and sharp bends are brought off other sides of the surface.
+void keep_to_own_side(Extraction& extraction, const Mesh& surface,
+                      const VertexFaces& around_surface, const Graph& graph,
+                      const SmoothOptions& options, const Context& context);
+
 }  // namespace meshgrain

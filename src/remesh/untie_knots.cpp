@@ -184,6 +184,8 @@ class Untier {
       Extraction changed = collect_faces(parts.map, repair, parts.clusters, vertex, context_);
       smooth(changed, surface_, around_surface_, graph_, smoothing_, context_);
       if (!is_as_good(changed, piece.extraction)) continue;
+      keep_to_own_side(changed, surface_, around_surface_, graph_, smoothing_, context_);
+      if (!is_as_good(changed, piece.extraction)) continue;
       auto sources = rim_sources(piece, map, vertex, changed.mesh.positions.size());
       return Untied{std::move(changed), std::move(sources)};
     }
