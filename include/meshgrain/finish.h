@@ -39,6 +39,9 @@ struct SmoothOptions {
   /// out at the ends of the surface, faces that pass through each other are not parted, and none is
   /// brought off another side of it.
   bool is_part = false;
+  /// Faces that are still bad once each vertex was tried are mended together with those around
+  /// them, which takes long.
+  bool mends_places = true;
   /// Corners stay even where the faces around them are bad.
   bool corners_stay = false;
   /// And so do all vertices on lines, but those of the border.

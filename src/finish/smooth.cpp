@@ -369,7 +369,7 @@ void Smoother::mend() {
   LocalSearch search(extraction_, around_, placement_, context_);
   constexpr int sweeps = 30, sweeps_of_part = 8;
   untangle(mesh_, around_, search, options_.is_part ? sweeps_of_part : sweeps, context_);
-  mend_places(mesh_, around_, placement_, search, options_, context_);
+  if (options_.mends_places) mend_places(mesh_, around_, placement_, search, options_, context_);
 }
 
 void Smoother::fit_faces() {

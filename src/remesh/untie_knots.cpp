@@ -45,6 +45,7 @@ class Untier {
         context_(context) {
     smoothing_.iterations = iterations;
     smoothing_.is_part = true;
+    smoothing_.mends_places = false;  // what would need it is not kept
     smoothing_.creases_stay = smoothing_.corners_stay = true;
   }
 
