@@ -186,6 +186,7 @@ Smoother::Smoother(Extraction& extraction, const Mesh& surface, const VertexFace
   previous_ = mesh_.positions;
   if (start == Start::as_it_is) {
     placement_.go_around(around_);
+    for_vertices([&](std::size_t v) { normals_[v] = placement_.normal(v); });
     return;
   }
   move_vertices(
