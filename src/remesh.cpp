@@ -66,7 +66,7 @@ void make_mesh(Pipeline& pipeline) {
     pipeline.position_and_extract();
     pipeline.smooth_faces();
     pipeline.untwist_faces();
-  } while (pipeline.reach_ends());
+  } while (pipeline.mend_flaws());
   pipeline.try_coarser_lattice();
   pipeline.try_less_regular();
   pipeline.untie_knots();

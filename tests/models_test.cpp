@@ -162,7 +162,6 @@ TEST_F(Models, DoNotPassThroughThemselves) {
   if (checked == 0) GTEST_SKIP() << "none of the models is there";
 }
 
-/// Creases, corners and ragged borders are followed without any option.
 /// On a lattice twice as coarse as the quads, two of armadillo's fingers are cut off by three sides
 /// of a face at these counts, and one by two sides on another where positions start as usual.
 TEST_F(Models, EndsOfLimbsAreReached) {
@@ -182,6 +181,7 @@ TEST_F(Models, EndsOfLimbsAreReached) {
   }
 }
 
+/// Creases, corners and ragged borders are followed without any option.
 TEST_F(Models, LinesAreKept) {
   int checked = 0;
   for (const char* name : {"fandisk", "stanford-bunny", "suzanne"}) {

@@ -129,6 +129,10 @@ class FaceRepair {
   void split_large();
 
   bool is_hole(Index h) const { return hole_[h]; }
+  /// Whether a vertex may go anywhere.
+  bool is_loose(Index vertex) const {
+    return !clusters_.on_border[vertex] && clusters_.hold[vertex] == free_vertex;
+  }
   /// The feature line that the edge of h is part of, or no_index.
   Index line(Index h) const { return lines_[h / 2]; }
 
@@ -190,10 +194,6 @@ class FaceRepair {
   /// Whether the origin of h and the corner opposite to it in their quad have nothing in common but
   /// that; else other faces would come to touch themselves if the two became one.
   bool are_apart(Index h) const;
-  /// Whether a vertex may go anywhere.
-  bool is_loose(Index vertex) const {
-    return !clusters_.on_border[vertex] && clusters_.hold[vertex] == free_vertex;
-  }
   float distance(Index a, Index b) const {
     return (clusters_.positions[a] - clusters_.positions[b]).norm();
   }

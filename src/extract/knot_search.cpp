@@ -162,11 +162,6 @@ class KnotSearch {
     return !state.changed->repair.is_hole(h) && state.changed->parts.map.degree(h) == 4;
   }
 
-  static bool is_loose(const State& state, Index v) {
-    const Clusters& clusters = state.changed->parts.clusters;
-    return !clusters.on_border[v] && clusters.hold[v] == free_vertex;
-  }
-
   /// By how much the sum grows if a vertex gets so many edges more.
   static int growth(const State& state, Index v, int more) {
     return square(state.excess[v] + more) - square(state.excess[v]);
@@ -175,13 +170,14 @@ class KnotSearch {
   template <typename Add>
   static void look_at_closing(const State& state, Index h, const Add& add) {
     if (!is_quad(state, h)) return;
-    const PolygonMap& map = state.changed->parts.map;
+    const auto& [parts, repair] = *state.changed;
+    const PolygonMap& map = parts.map;
     const Index across = map.next(map.next(h));
     const Index a = map.origin(h), b = map.target(h), c = map.origin(across),
                 d = map.target(across);
-    const bool is_same = across < h && is_loose(state, a);  // as closing the quad of `across`
+    const bool is_same = across < h && repair.is_loose(a);  // as closing the quad of `across`
     const std::vector<int>& excess = state.excess;
-    if (is_same || !is_loose(state, c) || excess[b] < 0 || excess[d] < 0) return;
+    if (is_same || !repair.is_loose(c) || excess[b] < 0 || excess[d] < 0) return;
     if (!any_irregular(excess, {a, b, c, d})) return;
     // One vertex has the edges of both, but for two that they share.
     const int merged = square(excess[a] + excess[c] + 2) - square(excess[a]) - square(excess[c]);

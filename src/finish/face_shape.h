@@ -48,6 +48,16 @@ inline float scaled_jacobian(std::span<const Index> quad, const std::vector<Vec3
   return least_sine(quad, positions, area_vector(quad, positions).normalized());
 }
 
+/// That of the flattest quad of a mesh; 1 without any.
+inline float least_jacobian(const Mesh& mesh) {
+  float least = 1;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto face = mesh.faces[f];
+    if (face.size() == 4) least = std::min(least, scaled_jacobian(face, mesh.positions));
+  }
+  return least;
+}
+
 /// The mean length of the edges of some faces; one between two of them counts for both.
 inline float mean_edge(const Mesh& mesh, std::span<const Index> faces) {
   float sum = 0, count = 0;

@@ -390,6 +390,17 @@ FeatureLines border_if_needed(const Mesh& surface, const SmoothOptions& options,
   return find_features(surface, {.creases = Creases::none, .align_border = false}, 0, context);
 }
 
+/// One step of smooth(), from where the vertices are.
+void do_alone(void (Smoother::*step)(), Extraction& extraction, const Mesh& surface,
+              const VertexFaces& around_surface, const Graph& graph, const SmoothOptions& options,
+              const Context& context) {
+  const FeatureLines border = border_if_needed(surface, options, context);
+  const FeatureLines& features = options.features != nullptr ? *options.features : border;
+  Smoother smoother(extraction, surface, around_surface, graph, features, options,
+                    Smoother::Start::as_it_is, context);
+  (smoother.*step)();
+}
+
 }  // namespace
 
 void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
@@ -426,20 +437,13 @@ void smooth(Extraction& extraction, const Mesh& surface, const VertexFaces& arou
 void keep_to_own_side(Extraction& extraction, const Mesh& surface,
                       const VertexFaces& around_surface, const Graph& graph,
                       const SmoothOptions& options, const Context& context) {
-  const FeatureLines border = border_if_needed(surface, options, context);
-  const FeatureLines& features = options.features != nullptr ? *options.features : border;
-  Smoother(extraction, surface, around_surface, graph, features, options, Smoother::Start::as_it_is,
-           context)
-      .keep_to_own_side();
+  do_alone(&Smoother::keep_to_own_side, extraction, surface, around_surface, graph, options,
+           context);
 }
 
 void mend(Extraction& extraction, const Mesh& surface, const VertexFaces& around_surface,
           const Graph& graph, const SmoothOptions& options, const Context& context) {
-  const FeatureLines border = border_if_needed(surface, options, context);
-  const FeatureLines& features = options.features != nullptr ? *options.features : border;
-  Smoother(extraction, surface, around_surface, graph, features, options, Smoother::Start::as_it_is,
-           context)
-      .mend();
+  do_alone(&Smoother::mend, extraction, surface, around_surface, graph, options, context);
 }
 
 }  // namespace meshgrain

@@ -148,7 +148,7 @@ bool Pipeline::has_branches(std::size_t border_edges) const {
   return rim_edges(surface_, context_).size() != border_edges;
 }
 
-bool Pipeline::reach_ends() {
+bool Pipeline::mend_flaws() {
   if (!may_make_others()) return false;
   const std::size_t missed = missed_ends();
   // It costs half as many irregular vertices again, which is not for those who want the fewest.
@@ -321,11 +321,13 @@ void Pipeline::aim_at(OutputFaces lattice_faces) {
 
 void Pipeline::change_target(const RemeshOptions& options) {
   wanted_ = options;
-  other_start_ = 0;
   aim_at(options.faces);
   find_lines();
   choose_lattice();
   size_faces();
+  if (std::exchange(other_start_, 0) == 0) return;
+  complete_levels();
+  orient();
 }
 
 RemeshResult Pipeline::take_mesh(const RemeshReport& prepared) {

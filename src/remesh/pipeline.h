@@ -65,7 +65,7 @@ class Pipeline {
   /// as these. Returns whether it did: the faces are to be made once more, then. Else lattices that
   /// start elsewhere are tried where ends are missed, quads are nearly flat, or faces pass through
   /// each other and the surface does not.
-  bool reach_ends();
+  bool mend_flaws();
   /// Where refine_for_details() leaves inverted quads all the same, what there would be without it:
   /// that is kept if it has fewer of these and of crossings together.
   void try_coarser_lattice();
@@ -135,8 +135,6 @@ class Pipeline {
   std::size_t missed_ends() const;
   /// So many are not left alone.
   static constexpr std::size_t many_ends = 2;
-  /// The least scaled Jacobian of the quads.
-  float least_jacobian() const;
   /// What other fields may do without.
   struct Flaws {
     std::size_t missed_ends = 0;

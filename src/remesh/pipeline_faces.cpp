@@ -326,19 +326,11 @@ bool Pipeline::may_make_others() const {
   return options_.smoothing > 0 && has_few_faces() && !has_given_positions(options_);
 }
 
-float Pipeline::least_jacobian() const {
-  float least = 1;
-  const Mesh& mesh = extraction_.mesh;
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    const auto face = mesh.faces[f];
-    if (face.size() == 4) least = std::min(least, scaled_jacobian(face, mesh.positions));
-  }
-  return least;
-}
-
 Pipeline::Flaws Pipeline::flaws(std::size_t missed) const {
   constexpr float nearly_flat = 0.1f;  // beyond it a quad is as good as any
-  return {missed, std::max(0.0f, nearly_flat - least_jacobian()), faults()};
+  const float flatness = std::max(0.0f, nearly_flat - least_jacobian(extraction_.mesh));
+  const std::size_t inverted = flatness > 0 ? inverted_faces() : 0;
+  return {missed, flatness, inverted + find_crossings(extraction_.mesh, context_).size()};
 }
 
 bool Pipeline::Flaws::are_fewer_than(const Flaws& other) const {

@@ -20,6 +20,7 @@
 #include "finish/face_shape.h"
 #include "finish/smooth.h"
 #include "mesh/border.h"
+#include "meshgrain/surface.h"
 #include "remesh/change_piece.h"
 #include "util/triangle.h"
 
@@ -214,28 +215,13 @@ class Untier {
   bool is_as_good(const Extraction& changed, const Extraction& old) const {
     constexpr float good = 0.5f;          // a scaled Jacobian
     constexpr float hardly_any = 0.002f;  // of what lean() says
-    constexpr float far = 0.6f;           // sides: else the end of a limb might go
+    constexpr double far = 0.6;           // sides: else the end of a limb might go
     if (lack(changed.mesh) > most_worse_ * lack(old.mesh)) return false;
-    if (least_quality(changed.mesh) < std::min(least_quality(old.mesh), good)) return false;
+    if (least_jacobian(changed.mesh) < std::min(least_jacobian(old.mesh), good)) return false;
     if (lean(changed) > 1.05f * lean(old) + hardly_any) return false;
-    const float side = std::sqrt(area(old.mesh) / static_cast<float>(old.mesh.faces.size()));
+    const double side =
+        std::sqrt(surface_area(old.mesh) / static_cast<double>(old.mesh.faces.size()));
     return farthest(old.mesh, changed.mesh) <= far * side;
-  }
-
-  static float least_quality(const Mesh& mesh) {
-    float least = 1;
-    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-      least = std::min(least, scaled_jacobian(mesh.faces[f], mesh.positions));
-    }
-    return least;
-  }
-
-  static float area(const Mesh& mesh) {
-    float sum = 0;
-    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-      sum += area_vector(mesh.faces[f], mesh.positions).norm();
-    }
-    return sum;
   }
 
   /// The distance of the vertex of one mesh that is farthest from the other.
