@@ -70,6 +70,7 @@ void make_mesh(Pipeline& pipeline) {
   pipeline.try_coarser_lattice();
   pipeline.try_less_regular();
   pipeline.untie_knots();
+  pipeline.note_odd_borders();
   pipeline.note_scraps();
   pipeline.report_fields();
 }

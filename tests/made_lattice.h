@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <utility>
 
 #include "extract/lattice_mesh.h"
@@ -10,8 +12,10 @@
 
 namespace meshgrain::made {
 
-/// What extract_mesh() has when it begins to cancel position singularities.
-inline LatticeMesh lattice(const Mesh& triangles, int posy, float edge_length) {
+/// What extract_mesh() has when it begins to cancel position singularities. `keeps_singularities`:
+/// of each vertex, see ExtractOptions.
+inline LatticeMesh lattice(const Mesh& triangles, int posy, float edge_length,
+                           std::span<const std::uint8_t> keeps_singularities = {}) {
   const Hierarchy hierarchy = build_hierarchy(build_graph(triangles));
   const Graph& graph = hierarchy.levels[0];
   OrientationOptions orientation_options;
@@ -25,7 +29,7 @@ inline LatticeMesh lattice(const Mesh& triangles, int posy, float edge_length) {
       collapse_mesh(triangles, find_features(triangles, {}, edge_length), graph, orientation,
                     position, position_options.energy, Context());
   LatticeMesh result(std::move(collapsed.lattice), std::move(collapsed.clusters), collapsed.roots,
-                     graph, orientation, position);
+                     graph, orientation, position, keeps_singularities);
   repair_lattice(result, Context());
   return result;
 }

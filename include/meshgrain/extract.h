@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "meshgrain/context.h"
@@ -28,6 +29,8 @@ struct ExtractOptions {
   /// The same where the target edge length varies: rows must end there, each at a pair of irregular
   /// vertices.
   double cancelling_cost_where_graded = 3;
+  /// Over a mesh: where all position singularities stay, a flag a node; empty: nowhere.
+  std::vector<std::uint8_t> keeps_singularities;
   /// Over a mesh, for a 4-PoSy: quads alone. Triangles and pentagons go in pairs, with a row of
   /// quads more between the two.
   bool only_quads = false;

@@ -88,8 +88,9 @@ class Cancelling {
   }
 
   double most_for(const UnitWaves::Ends& ends) const {
-    const bool graded =
-        lattice_.is_graded(ends.from) || (ends.to != no_index && lattice_.is_graded(ends.to));
+    const auto any = [&](auto is) { return is(ends.from) || (ends.to != no_index && is(ends.to)); };
+    if (any([&](Index h) { return lattice_.keeps_singularity(h); })) return 0;
+    const bool graded = any([&](Index h) { return lattice_.is_graded(h); });
     return graded ? most_.where_graded : most_.usual;
   }
 

@@ -107,7 +107,7 @@ Extraction extract_from_mesh(const Graph& graph, const OrientationField& orienta
   CollapsedMesh collapsed = collapse_mesh(*options.surface, features, graph, orientation, position,
                                           options.energy, context);
   LatticeMesh lattice(std::move(collapsed.lattice), std::move(collapsed.clusters), collapsed.roots,
-                      graph, orientation, position);
+                      graph, orientation, position, options.keeps_singularities);
   open_strips(lattice);
   repair_lattice(lattice, context);
   cancel_position_singularities(

@@ -10,7 +10,8 @@ namespace meshgrain {
 
 LatticeMesh::LatticeMesh(JumpMap&& shrunk, Clusters&& clusters_of_vertices,
                          std::span<const Index> roots, const Graph& graph,
-                         const OrientationField& orientation, const PositionField& position)
+                         const OrientationField& orientation, const PositionField& position,
+                         std::span<const std::uint8_t> keeps_singularities)
     : JumpMap(std::move(shrunk)), clusters(std::move(clusters_of_vertices)) {
   directions_.resize(roots.size());
   lengths_.resize(roots.size());
@@ -20,6 +21,7 @@ LatticeMesh::LatticeMesh(JumpMap&& shrunk, Clusters&& clusters_of_vertices,
     directions_[v] =
         transport(orientation.directions[root], graph.normals[root], clusters.normals[v]);
     lengths_[v] = position.edge_length[root];
+    if (!keeps_singularities.empty()) keeps_singularities_.push_back(keeps_singularities[root]);
   }
 }
 
@@ -48,6 +50,12 @@ bool LatticeMesh::is_graded(Index h) const {
       {lengths_[map.origin(h)], lengths_[map.target(h)], lengths_[map.target(map.next(h))]});
   constexpr float considerably = 1.001f;
   return most > considerably * least;
+}
+
+bool LatticeMesh::keeps_singularity(Index h) const {
+  return !keeps_singularities_.empty() &&
+         (keeps_singularities_[map.origin(h)] || keeps_singularities_[map.target(h)] ||
+          keeps_singularities_[map.target(map.next(h))]);
 }
 
 double LatticeMesh::misfit(Index h, const std::array<int, 2>& t) const {
@@ -135,6 +143,7 @@ void LatticeMesh::add_vertex(Index like, const Vec3& position, bool on_border, H
   hold.push_back(held);
   directions_.push_back(directions_[like]);
   lengths_.push_back(lengths_[like]);
+  if (!keeps_singularities_.empty()) keeps_singularities_.push_back(keeps_singularities_[like]);
   reach_.push_back(0);
 }
 

@@ -16,10 +16,12 @@ namespace meshgrain {
 /// triangle is singular it is a map of the surface into the plane, with vertices at integers.
 class LatticeMesh : public JumpMap {
  public:
-  /// `roots`: for each vertex the node in whose frame its jumps are.
+  /// `roots`: for each vertex the node in whose frame its jumps are. `keeps_singularities`: see
+  /// ExtractOptions.
   LatticeMesh(JumpMap&& shrunk, Clusters&& clusters_of_vertices, std::span<const Index> roots,
               const Graph& graph, const OrientationField& orientation,
-              const PositionField& position);
+              const PositionField& position,
+              std::span<const std::uint8_t> keeps_singularities = {});
 
   Clusters clusters;
 
@@ -33,6 +35,8 @@ class LatticeMesh : public JumpMap {
   }
   /// Whether the target edge length varies over that triangle.
   bool is_graded(Index h) const;
+  /// Whether it may not become regular.
+  bool keeps_singularity(Index h) const;
   /// Whether h has a triangle on its left, and is the halfedge that stands for it.
   bool stands_for_triangle(Index h) const {
     return !map.removed(h) && !holes[h] && h < map.next(h) && h < map.prev(h);
@@ -86,7 +90,8 @@ class LatticeMesh : public JumpMap {
 
   std::vector<Vec3> directions_;
   std::vector<float> lengths_;
-  std::vector<float> reach_;  // of each vertex: see reach_with_target()
+  std::vector<std::uint8_t> keeps_singularities_;  // or empty
+  std::vector<float> reach_;                       // of each vertex: see reach_with_target()
   LinkCondition link_;
 };
 

@@ -72,11 +72,19 @@ class BareEnds {
         vertex_(graph.size(), no_index) {}
 
   std::vector<Reach> find(const EdgeLength& reach);
+  std::vector<Index> nodes(const EdgeLength& reach);
 
  private:
   /// The nodes that have no vertex within reach on their side of the surface.
   std::vector<Index> not_reached(const EdgeLength& reach);
   void find_ways(const std::vector<Index>& bare);
+  /// Whether there is a way, and longer than `reach`.
+  bool is_far(Index node, const EdgeLength& reach) const {
+    return length_[node] > reach[node] && length_[node] < std::numeric_limits<float>::infinity();
+  }
+  float distance_to_mesh(Index node) const {
+    return distance_to_star(graph_.positions[node], extraction_.mesh, around_, vertex_[node]);
+  }
 
   const Extraction& extraction_;
   const VertexFaces& around_;
@@ -169,14 +177,13 @@ std::vector<Reach> BareEnds::find(const EdgeLength& reach) {
   };
   std::vector<Tip> tips;
   for (const Index i : bare) {
-    if (!(length_[i] > reach[i]) || length_[i] == std::numeric_limits<float>::infinity()) continue;
+    if (!is_far(i, reach)) continue;
     const auto neighbors = graph_.neighbors_of(i);
     if (std::any_of(neighbors.begin(), neighbors.end(),
                     [&](Index j) { return length_[j] > length_[i]; })) {
       continue;
     }
-    const float distance =
-        distance_to_star(graph_.positions[i], extraction_.mesh, around_, vertex_[i]);
+    const float distance = distance_to_mesh(i);
     if (distance > reach[i]) tips.push_back({distance, i});
   }
   std::sort(tips.begin(), tips.end(), [](const Tip& a, const Tip& b) {
@@ -208,12 +215,28 @@ std::vector<Reach> BareEnds::find(const EdgeLength& reach) {
   return result;
 }
 
+std::vector<Index> BareEnds::nodes(const EdgeLength& reach) {
+  constexpr float share = 0.75f;  // in the middle of a square face vertices are .7 of a side away
+  std::vector<Index> bare = not_reached(reach);
+  if (bare.empty()) return {};
+  find_ways(bare);
+  std::erase_if(
+      bare, [&](Index i) { return !is_far(i, reach) || distance_to_mesh(i) <= share * reach[i]; });
+  return bare;
+}
+
 }  // namespace
 
 std::vector<Reach> find_bare_ends(const Extraction& extraction, const VertexFaces& around,
                                   const Graph& graph, const EdgeLength& reach,
                                   const Context& context) {
   return BareEnds(extraction, around, graph, context).find(reach);
+}
+
+std::vector<Index> find_bare_nodes(const Extraction& extraction, const VertexFaces& around,
+                                   const Graph& graph, const EdgeLength& reach,
+                                   const Context& context) {
+  return BareEnds(extraction, around, graph, context).nodes(reach);
 }
 
 }  // namespace meshgrain

@@ -27,4 +27,10 @@ std::vector<Reach> find_bare_ends(const Extraction& extraction, const VertexFace
                                   const Graph& graph, const EdgeLength& reach,
                                   const Context& context);
 
+/// The nodes that the mesh leaves bare: no vertex is within `reach` of them on their side of the
+/// surface, and no face within three quarters of it.
+std::vector<Index> find_bare_nodes(const Extraction& extraction, const VertexFaces& around,
+                                   const Graph& graph, const EdgeLength& reach,
+                                   const Context& context);
+
 }  // namespace meshgrain

@@ -410,13 +410,14 @@ void smooth(Extraction& extraction, const Mesh& surface, const Graph& graph,
          options, context);
 }
 
-void smooth(Extraction& extraction, const Mesh& surface, const VertexFaces& around_surface,
-            const Graph& graph, const SmoothOptions& options, const Context& context) {
+bool smooth(Extraction& extraction, const Mesh& surface, const VertexFaces& around_surface,
+            const Graph& graph, const SmoothOptions& options, const Context& context,
+            const std::function<bool()>& is_worth_it) {
   const FeatureLines border = border_if_needed(surface, options, context);
   const FeatureLines& features = options.features != nullptr ? *options.features : border;
   Smoother smoother(extraction, surface, around_surface, graph, features, options,
                     Smoother::Start::on_surface, context);
-  if (options.iterations == 0) return;
+  if (options.iterations == 0) return true;
   smoother.open_small_holes(features);
   // Even sizes draw the surface's ends in first of all, so that they show early.
   constexpr int hold_after[] = {1, 2, 4}, whole = 6;  // sixths of the iterations
@@ -429,9 +430,11 @@ void smooth(Extraction& extraction, const Mesh& surface, const VertexFaces& arou
     done = until;
   }
   smoother.iterate(iterations - done, true);
+  if (is_worth_it && !is_worth_it()) return false;
   smoother.mend();
   smoother.fit_faces();
   if (!options.is_part) smoother.keep_to_own_side();
+  return true;
 }
 
 void keep_to_own_side(Extraction& extraction, const Mesh& surface,

@@ -148,29 +148,6 @@ bool Pipeline::has_branches(std::size_t border_edges) const {
   return rim_edges(surface_, context_).size() != border_edges;
 }
 
-bool Pipeline::mend_flaws() {
-  if (!may_make_others()) return false;
-  const std::size_t missed = missed_ends();
-  // It costs half as many irregular vertices again, which is not for those who want the fewest.
-  const bool may_cost = regularity_ <= RemeshOptions().regularity;
-  const bool is_coarse = lattice_faces_ == OutputFaces::quads;
-  if (missed < many_ends || !may_cost || !is_coarse || !may_have_fine_lattice() ||
-      has_branches(border_edges(surface_, context_).size())) {
-    try_other_starts(missed);
-    return false;
-  }
-  extraction_ = {};
-  is_split_ = false;
-  aim_at(OutputFaces::quad_dominant);
-  const std::size_t nodes = graph().size();
-  refine_for_lattice();
-  complete_levels();
-  size_faces();
-  refine_for_sizes();
-  if (graph().size() != nodes) orient();
-  return true;
-}
-
 void Pipeline::size_faces() {
   Sizing sizing = options_.sizing;
   sizing.point = frame_.inside(sizing.point);
@@ -301,6 +278,17 @@ void Pipeline::note_scraps() {
                                  "--min-component 1 leaves them out");
 }
 
+void Pipeline::note_odd_borders() {
+  if (borders_.empty() || options_.faces != OutputFaces::quads) return;
+  const Faces& faces = extraction_.mesh.faces;
+  std::size_t triangles = 0;
+  for (std::size_t f = 0; f < faces.size(); ++f) triangles += faces.degree(f) == 3;
+  if (triangles == 0) return;
+  result_.report.notes.push_back(
+      std::to_string(triangles) + (triangles == 1 ? " triangle" : " triangles") +
+      ": a border of an odd number of edges cannot be met by quads alone");
+}
+
 void Pipeline::report_fields() {
   result_.report.edge_length = fields().position.edge_length[0] * frame_.scale;
   if (!options_.count_singularities || is_cloud_ || !nodes_are_vertices_) return;
@@ -325,6 +313,7 @@ void Pipeline::change_target(const RemeshOptions& options) {
   find_lines();
   choose_lattice();
   size_faces();
+  keeps_singularities_.clear();
   if (std::exchange(other_start_, 0) == 0) return;
   complete_levels();
   orient();

@@ -22,7 +22,8 @@
 namespace meshgrain {
 
 /// The stages of remesh(), in their order: each leaves what the next ones need. Those up to the
-/// graph are in pipeline_surface.cpp, those from the fields on in pipeline_faces.cpp.
+/// graph are in pipeline_surface.cpp, those from the fields on in pipeline_faces.cpp, and what is
+/// done where these are not good enough in pipeline_attempts.cpp.
 class Pipeline {
  public:
   Pipeline(const Mesh& input, const RemeshOptions& options, const Context& context);
@@ -57,14 +58,16 @@ class Pipeline {
   /// longer or shorter. A few faces too many can be taken away one by one: that costs some
   /// regularity, so that more of it is allowed only when other lengths have not helped.
   void position_and_extract();
+
+  /// Where the faces lose some of the surface, others are made before these are mended.
   void smooth_faces();
 
   /// Quads that are twisted even then leave the surface.
   void untwist_faces();
-  /// Where ends of the surface are missed all the same, the lattice of pure quads becomes as fine
-  /// as these. Returns whether it did: the faces are to be made once more, then. Else lattices that
-  /// start elsewhere are tried where ends are missed, quads are nearly flat, or faces pass through
-  /// each other and the surface does not.
+  /// Where the faces have lost some of the surface, other ones are made; where much of it is lost
+  /// all the same, the lattice of pure quads becomes as fine as these. Returns whether it did: the
+  /// faces are to be made once more, then. Else lattices that start elsewhere are tried where some
+  /// is lost, quads are nearly flat, or faces pass through each other and the surface does not.
   bool mend_flaws();
   /// Where refine_for_details() leaves inverted quads all the same, what there would be without it:
   /// that is kept if it has fewer of these and of crossings together.
@@ -76,6 +79,8 @@ class Pipeline {
   /// Pure quads: irregular vertices that cancel each other out go.
   void untie_knots();
 
+  /// If quads alone could not meet borders that stay.
+  void note_odd_borders();
   /// If there are many pieces smaller than a face.
   void note_scraps();
   /// Their edge length and singularities.
@@ -110,10 +115,23 @@ class Pipeline {
   std::size_t inverted_faces() const;
   /// Inverted faces, and pairs that pass through each other.
   std::size_t faults() const;
-  /// Makes the faces once more, as all is now. Keeps what was before, and returns false, unless
+  /// The faces, and what they were made from.
+  struct Attempt {
+    Extraction extraction;
+    bool is_split;
+    PositionField positions;
+    std::vector<EnergyRecord> energies;
+  };
+  Attempt take_attempt();
+  void put_back(Attempt&& attempt);
+  /// As all is now. Returns whether there are any.
+  bool make_faces_again();
+  /// Makes the faces once more and smooths them. Keeps what was before, and returns false, unless
   /// these are better.
   bool try_again(const std::function<bool()>& is_better);
 
+  /// Returns false if they are not worth mending, and have not been.
+  bool smooth_faces_if(const std::function<bool()>& is_worth_mending);
   /// position_and_extract(), but there may be no faces.
   void find_faces();
   void aim_at(OutputFaces lattice_faces);
@@ -130,25 +148,39 @@ class Pipeline {
   bool choose_lattice();
   /// The surface, for the lattice that was chosen.
   void refine_for_lattice();
-  /// Fingers, horns and ears that stick out of the faces by far, those that do by very far twice;
-  /// none where they cannot be told.
-  std::size_t missed_ends() const;
-  /// So many are not left alone.
-  static constexpr std::size_t many_ends = 2;
+  /// What the faces are far from: limbs that were cut off, slits that were closed, edges of thin
+  /// parts that they keep inside of. None where that cannot be told.
+  struct LostSurface {
+    std::vector<Index> nodes;
+    double faces = 0;  // that would cover it
+    bool is_considerably_less_than(const LostSurface& other) const;
+  };
+  LostSurface lost_surface() const;
+  // What is hardly to be seen; mending the faces loses some more. And what is worth a lattice as
+  // fine as the quads.
+  static constexpr double little_lost_before = 5, little_lost = 8, much_lost = 15;
   /// What other fields may do without.
   struct Flaws {
-    std::size_t missed_ends = 0;
-    float flatness = 0;  // of the flattest quad, if that is nearly flat
+    double lost_faces = 0;  // if these are not little
+    float flatness = 0;     // of the flattest quad, if that is nearly flat
     std::size_t faults = 0;
     bool are_fewer_than(const Flaws& other) const;
   };
-  Flaws flaws(std::size_t missed) const;
+  Flaws flaws(double lost_faces) const;
   /// Whether the surface passes through itself.
   bool surface_crosses();
   /// Whether they are to be left alone.
   bool are_few(const Flaws& flaws);
-  /// Until there are few; `missed` ends are now.
-  void try_other_starts(std::size_t missed);
+  /// Limbs become thinner than they are, and are lost, where the rows around them are as many as
+  /// at their ends: a lattice that has all its singularities there lets rows end.
+  void keep_singularities_around(const std::vector<Index>& nodes);
+  /// Makes the faces once more, so, if they have lost something when all is done. Returns how many
+  /// are lost in the end.
+  double recover_lost_surface();
+  /// Until there are few.
+  void try_other_starts(double lost_faces);
+  /// Irregular vertices may be the price: not for those who want fewer of them than by default.
+  bool may_be_irregular() const;
   /// Whether what is wrong with the faces is to be seen, and other ones would not take too long.
   bool may_make_others() const;
   FeatureOptions feature_options() const;
@@ -228,6 +260,7 @@ class Pipeline {
   std::vector<GuideRun> soft_guides_;  // that fields are drawn to
   FeatureLines features_;
   FeatureConstraints constraints_;
+  std::vector<std::uint8_t> keeps_singularities_;  // the lattice; see ExtractOptions
   Extraction extraction_;
   bool is_split_ = false;  // into the quads that are written
 };

@@ -1,4 +1,4 @@
-// The stages of the pipeline from the fields to the faces, and what they are judged by.
+// The stages of the pipeline from the fields to the faces.
 
 #include <algorithm>
 #include <cmath>
@@ -10,14 +10,11 @@
 #include "extract/remove_strips.h"
 #include "extract/single_faces.h"
 #include "field/transfer.h"
-#include "finish/bare_ends.h"
-#include "finish/crossings.h"
 #include "finish/face_shape.h"
 #include "finish/smooth.h"
 #include "finish/untwist.h"
 #include "mesh/border.h"
 #include "meshgrain/error.h"
-#include "meshgrain/statistics.h"
 #include "remesh/close_bad_quads.h"
 #include "remesh/count_search.h"
 #include "remesh/pipeline.h"
@@ -211,6 +208,7 @@ Extraction Pipeline::extract(const PositionField& positions) {
     extract.surface = &surface_;
     extract.features = &features_;
     extract.only_quads = has_quads_alone();
+    extract.keeps_singularities = keeps_singularities_;
     extract.manifold = options_.manifold || !borders_.empty();  // see finish_borders()
   } else {
     extract.border = border_of_faces(surface_, graph());
@@ -251,12 +249,17 @@ SmoothOptions Pipeline::smooth_options() const {
   return smoothing;
 }
 
-void Pipeline::smooth_faces() {
-  stage_("smoothing", [&] {
-    if (lattice_faces_ == OutputFaces::quads && !is_split_) split(extraction_);
+bool Pipeline::smooth_faces_if(const std::function<bool()>& is_worth_mending) {
+  return stage_("smoothing", [&] {
+    if (lattice_faces_ == OutputFaces::quads && !is_split_) {
+      split(extraction_);
+      is_split_ = true;
+    }
     finish_borders();
     SmoothOptions smoothing = smooth_options();
-    smooth(extraction_, surface_, around_, graph(), smoothing, context_);
+    if (!smooth(extraction_, surface_, around_, graph(), smoothing, context_, is_worth_mending)) {
+      return false;
+    }
     // What is bad beside vertices that cannot move shows only now.
     if (!borders_.empty() && improve_border_faces(extraction_, options_.faces, context_)) {
       smooth(extraction_, surface_, around_, graph(), smoothing, context_);
@@ -265,6 +268,7 @@ void Pipeline::smooth_faces() {
       close_bad_quads(extraction_, surface_, around_, graph(), std::move(smoothing),
                       target_.spare_faces(extraction_.mesh), context_);
     }
+    return true;
   });
 }
 
@@ -273,14 +277,6 @@ void Pipeline::finish_borders() {
   if (options_.faces == OutputFaces::quads) {
     drop_spare_middles(extraction_);
     improve_border_faces(extraction_, options_.faces, context_);
-    const Faces& faces = extraction_.mesh.faces;
-    std::size_t triangles = 0;
-    for (std::size_t f = 0; f < faces.size(); ++f) triangles += faces.degree(f) == 3;
-    if (triangles > 0) {
-      result_.report.notes.push_back(
-          std::to_string(triangles) + (triangles == 1 ? " triangle" : " triangles") +
-          ": a border of an odd number of edges cannot be met by quads alone");
-    }
   }
   // The pieces of a surface that is not manifold were kept apart, so that each had its own borders.
   if (!options_.manifold) join_locked(extraction_);
@@ -299,130 +295,6 @@ void Pipeline::untie_knots() {
     meshgrain::untie_knots(extraction_, surface_, around_, graph(), smooth_options(),
                            target_.spare_faces(extraction_.mesh), most_worse, context_);
   });
-}
-
-std::size_t Pipeline::inverted_faces() const {
-  return mesh_statistics(extraction_.mesh).inverted_quads;
-}
-
-std::size_t Pipeline::faults() const {
-  return inverted_faces() + find_crossings(extraction_.mesh, context_).size();
-}
-
-std::size_t Pipeline::missed_ends() const {
-  if (is_cloud_ || !nodes_are_vertices_) return 0;
-  const float side = lattice_faces_ == OutputFaces::quads ? 0.5f : 1;  // of an edge of the lattice
-  const VertexFaces around = vertex_faces(extraction_.mesh, context_);
-  const auto count = [&](float sides) {
-    return find_bare_ends(extraction_, around, graph(), scaled(lengths_, sides * side), context_)
-        .size();
-  };
-  constexpr float far = 1.5f, very_far = 2;
-  const std::size_t missed = count(far);
-  return missed > 0 ? missed + count(very_far) : 0;
-}
-
-bool Pipeline::may_make_others() const {
-  return options_.smoothing > 0 && has_few_faces() && !has_given_positions(options_);
-}
-
-Pipeline::Flaws Pipeline::flaws(std::size_t missed) const {
-  constexpr float nearly_flat = 0.1f;  // beyond it a quad is as good as any
-  const float flatness = std::max(0.0f, nearly_flat - least_jacobian(extraction_.mesh));
-  const std::size_t inverted = flatness > 0 ? inverted_faces() : 0;
-  return {missed, flatness, inverted + find_crossings(extraction_.mesh, context_).size()};
-}
-
-bool Pipeline::Flaws::are_fewer_than(const Flaws& other) const {
-  return missed_ends <= other.missed_ends && flatness <= other.flatness && faults <= other.faults &&
-         (missed_ends < other.missed_ends || flatness < other.flatness || faults < other.faults);
-}
-
-bool Pipeline::surface_crosses() {
-  if (is_cloud_) return true;  // as far as is known
-  if (!surface_crosses_) {
-    constexpr double deep = 0.01;  // sides: rounding makes for less
-    const double least = deep * target_.face_side(area_);
-    surface_crosses_ = std::ranges::any_of(find_crossings(surface_, context_), [&](auto pair) {
-      return penetration(surface_, pair[0], pair[1]) > least;
-    });
-  }
-  return *surface_crosses_;
-}
-
-bool Pipeline::are_few(const Flaws& flaws) {
-  if (flaws.missed_ends >= many_ends || flaws.flatness > 0) return false;
-  // Where the surface passes through itself, so must what covers it.
-  return flaws.faults == 0 || surface_crosses();
-}
-
-void Pipeline::try_other_starts(std::size_t missed) {
-  constexpr std::uint64_t most = 2;
-  Flaws before = flaws(missed);
-  for (std::uint64_t start = 1; start <= most && !are_few(before); ++start) {
-    const std::uint64_t kept = std::exchange(other_start_, start);
-    OrientationField orientation = fields().orientation;
-    auto energies = result_.report.orientation_energies;
-    complete_levels();
-    orient();
-    Flaws now;
-    const auto is_better = [&] {
-      now = flaws(missed_ends());
-      return now.are_fewer_than(before);
-    };
-    if (try_again(is_better)) {
-      before = now;
-    } else {
-      other_start_ = kept;
-      fields().orientation = std::move(orientation);
-      result_.report.orientation_energies = std::move(energies);
-    }
-  }
-}
-
-void Pipeline::try_coarser_lattice() {
-  if (lattice_faces_ == options_.faces) return;
-  constexpr double hopeless = 0.2;
-  if (inverted_faces() == 0 || share_of_holes() > hopeless) return;
-  const std::size_t before = faults();
-  aim_at(options_.faces);
-  try_again([&] { return faults() < before; });
-}
-
-void Pipeline::try_less_regular() {
-  const double moderate = RemeshOptions().regularity;
-  if (is_cloud_ || options_.smoothing == 0 || regularity_ <= moderate) return;
-  constexpr std::size_t hopeless = 20;  // one in so many faces
-  const std::size_t before = faults();
-  if (before == 0 || before > extraction_.mesh.faces.size() / hopeless) return;
-  for (const double share : {0.5, 0.0}) {
-    regularity_ = moderate + share * (options_.regularity - moderate);
-    // Where the input passes through itself there are always some.
-    if (!try_again([&] { return faults() < before / 2; })) continue;
-    result_.report.notes.emplace_back(
-        "less regular than was asked for: faces would be inverted or pass through each other");
-    break;
-  }
-  regularity_ = options_.regularity;
-}
-
-bool Pipeline::try_again(const std::function<bool()>& is_better) {
-  Extraction before = std::exchange(extraction_, {});
-  PositionField positions = std::exchange(fields().position, {});
-  auto energies = std::exchange(result_.report.position_energies, {});
-  is_split_ = false;
-  complete_levels();
-  size_faces();
-  find_faces();
-  if (!extraction_.mesh.faces.empty()) {
-    smooth_faces();
-    untwist_faces();
-    if (is_better()) return true;
-  }
-  extraction_ = std::move(before);
-  fields().position = std::move(positions);
-  result_.report.position_energies = std::move(energies);
-  return false;
 }
 
 }  // namespace meshgrain

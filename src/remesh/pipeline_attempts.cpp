@@ -1,0 +1,245 @@
+// What is wrong with the faces, and the other ways that are tried then.
+
+#include <algorithm>
+#include <utility>
+
+#include "finish/bare_ends.h"
+#include "finish/crossings.h"
+#include "finish/face_shape.h"
+#include "graph/spread.h"
+#include "mesh/border.h"
+#include "meshgrain/statistics.h"
+#include "remesh/pipeline.h"
+
+namespace meshgrain {
+
+std::size_t Pipeline::inverted_faces() const {
+  return mesh_statistics(extraction_.mesh).inverted_quads;
+}
+
+std::size_t Pipeline::faults() const {
+  return inverted_faces() + find_crossings(extraction_.mesh, context_).size();
+}
+
+Pipeline::LostSurface Pipeline::lost_surface() const {
+  if (is_cloud_ || !nodes_are_vertices_) return {};
+  const float side = lattice_faces_ == OutputFaces::quads ? 0.5f : 1;  // of an edge of the lattice
+  const VertexFaces around = vertex_faces(extraction_.mesh, context_);
+  LostSurface lost;
+  lost.nodes = find_bare_nodes(extraction_, around, graph(), scaled(lengths_, side), context_);
+  for (const Index i : lost.nodes) lost.faces += graph().areas[i];
+  lost.faces /= target_.face_area(area_);
+  return lost;
+}
+
+bool Pipeline::LostSurface::is_considerably_less_than(const LostSurface& other) const {
+  return faces <= 0.7 * other.faces;
+}
+
+bool Pipeline::may_make_others() const {
+  return options_.smoothing > 0 && has_few_faces() && !has_given_positions(options_);
+}
+
+bool Pipeline::may_be_irregular() const {
+  return regularity_ <= RemeshOptions().regularity;
+}
+
+Pipeline::Flaws Pipeline::flaws(double lost_faces) const {
+  constexpr float nearly_flat = 0.1f;  // beyond it a quad is as good as any
+  const float flatness = std::max(0.0f, nearly_flat - least_jacobian(extraction_.mesh));
+  const std::size_t inverted = flatness > 0 ? inverted_faces() : 0;
+  return {lost_faces <= little_lost ? 0 : lost_faces, flatness,
+          inverted + find_crossings(extraction_.mesh, context_).size()};
+}
+
+bool Pipeline::Flaws::are_fewer_than(const Flaws& other) const {
+  return lost_faces <= other.lost_faces && flatness <= other.flatness && faults <= other.faults &&
+         (lost_faces < other.lost_faces || flatness < other.flatness || faults < other.faults);
+}
+
+bool Pipeline::surface_crosses() {
+  if (is_cloud_) return true;  // as far as is known
+  if (!surface_crosses_) {
+    constexpr double deep = 0.01;  // sides: rounding makes for less
+    const double least = deep * target_.face_side(area_);
+    surface_crosses_ = std::ranges::any_of(find_crossings(surface_, context_), [&](auto pair) {
+      return penetration(surface_, pair[0], pair[1]) > least;
+    });
+  }
+  return *surface_crosses_;
+}
+
+bool Pipeline::are_few(const Flaws& flaws) {
+  if (flaws.lost_faces > 0 || flaws.flatness > 0) return false;
+  // Where the surface passes through itself, so must what covers it.
+  return flaws.faults == 0 || surface_crosses();
+}
+
+void Pipeline::smooth_faces() {
+  constexpr int most_attempts = 3;
+  const bool may_change = may_make_others() && may_be_irregular();
+  Attempt best;
+  LostSurface least;
+  for (int attempt = 0; may_change && attempt < most_attempts; ++attempt) {
+    if (attempt > 0 && !make_faces_again()) break;
+    Extraction rough = extraction_;
+    const bool was_split = is_split_;
+    LostSurface lost;
+    const auto is_little_lost = [&] {
+      lost = lost_surface();
+      return lost.faces <= little_lost_before;
+    };
+    if (smooth_faces_if(is_little_lost)) return;
+    keep_singularities_around(lost.nodes);
+    Attempt now = take_attempt();
+    now.extraction = std::move(rough);
+    now.is_split = was_split;
+    if (attempt == 0 || lost.is_considerably_less_than(least)) {
+      best = std::move(now);
+      least = std::move(lost);
+    }
+  }
+  if (may_change) put_back(std::move(best));
+  smooth_faces_if({});
+}
+
+double Pipeline::recover_lost_surface() {
+  const LostSurface lost = lost_surface();
+  const bool was_tried = !keeps_singularities_.empty();  // before the faces were mended
+  if (lost.faces <= little_lost || !may_be_irregular() || was_tried) return lost.faces;
+  keep_singularities_around(lost.nodes);
+  const Flaws before = flaws(lost.faces);
+  LostSurface now;
+  const bool is_better = try_again([&] {
+    now = lost_surface();
+    if (!now.is_considerably_less_than(lost)) return false;
+    const Flaws after = flaws(now.faces);
+    return after.flatness <= before.flatness &&
+           (after.faults <= before.faults || surface_crosses());
+  });
+  return is_better ? now.faces : lost.faces;
+}
+
+void Pipeline::keep_singularities_around(const std::vector<Index>& nodes) {
+  constexpr double sides = 3.5;
+  const auto reach = static_cast<float>(sides * target_.face_side(area_));
+  std::vector<float> distance(graph().size(), 2 * reach);
+  std::vector<std::pair<float, Index>> sources;
+  for (const Index i : nodes) sources.push_back({distance[i] = 0, i});
+  const auto lower = [&](Index i, Index j) {
+    const float farther = distance[i] + (graph().positions[j] - graph().positions[i]).norm();
+    if (farther >= std::min(distance[j], reach)) return false;
+    distance[j] = farther;
+    return true;
+  };
+  spread(graph(), distance, sources, 1, lower, context_);
+  keeps_singularities_.resize(graph().size(), 0);
+  for (std::size_t i = 0; i < distance.size(); ++i) {
+    if (distance[i] < reach) keeps_singularities_[i] = 1;
+  }
+}
+
+bool Pipeline::mend_flaws() {
+  if (!may_make_others()) return false;
+  const double lost_faces = recover_lost_surface();
+  // It costs half as many irregular vertices again.
+  const bool is_coarse = lattice_faces_ == OutputFaces::quads;
+  if (lost_faces < much_lost || !may_be_irregular() || !is_coarse || !may_have_fine_lattice() ||
+      has_branches(border_edges(surface_, context_).size())) {
+    try_other_starts(lost_faces);
+    return false;
+  }
+  take_attempt();
+  keeps_singularities_.clear();
+  aim_at(OutputFaces::quad_dominant);
+  const std::size_t nodes = graph().size();
+  refine_for_lattice();
+  complete_levels();
+  size_faces();
+  refine_for_sizes();
+  if (graph().size() != nodes) orient();
+  return true;
+}
+
+void Pipeline::try_other_starts(double lost_faces) {
+  constexpr std::uint64_t most = 2;
+  Flaws before = flaws(lost_faces);
+  for (std::uint64_t start = 1; start <= most && !are_few(before); ++start) {
+    const std::uint64_t kept = std::exchange(other_start_, start);
+    OrientationField orientation = fields().orientation;
+    auto energies = result_.report.orientation_energies;
+    complete_levels();
+    orient();
+    Flaws now;
+    const auto is_better = [&] {
+      now = flaws(lost_surface().faces);
+      return now.are_fewer_than(before);
+    };
+    if (try_again(is_better)) {
+      before = now;
+    } else {
+      other_start_ = kept;
+      fields().orientation = std::move(orientation);
+      result_.report.orientation_energies = std::move(energies);
+    }
+  }
+}
+
+void Pipeline::try_coarser_lattice() {
+  if (lattice_faces_ == options_.faces) return;
+  constexpr double hopeless = 0.2;
+  if (inverted_faces() == 0 || share_of_holes() > hopeless) return;
+  const std::size_t before = faults();
+  aim_at(options_.faces);
+  try_again([&] { return faults() < before; });
+}
+
+void Pipeline::try_less_regular() {
+  const double moderate = RemeshOptions().regularity;
+  if (is_cloud_ || options_.smoothing == 0 || regularity_ <= moderate) return;
+  constexpr std::size_t hopeless = 20;  // one in so many faces
+  const std::size_t before = faults();
+  if (before == 0 || before > extraction_.mesh.faces.size() / hopeless) return;
+  for (const double share : {0.5, 0.0}) {
+    regularity_ = moderate + share * (options_.regularity - moderate);
+    // Where the input passes through itself there are always some.
+    if (!try_again([&] { return faults() < before / 2; })) continue;
+    result_.report.notes.emplace_back(
+        "less regular than was asked for: faces would be inverted or pass through each other");
+    break;
+  }
+  regularity_ = options_.regularity;
+}
+
+bool Pipeline::make_faces_again() {
+  complete_levels();
+  size_faces();
+  find_faces();
+  return !extraction_.mesh.faces.empty();
+}
+
+bool Pipeline::try_again(const std::function<bool()>& is_better) {
+  Attempt before = take_attempt();
+  if (make_faces_again()) {
+    smooth_faces();
+    untwist_faces();
+    if (is_better()) return true;
+  }
+  put_back(std::move(before));
+  return false;
+}
+
+Pipeline::Attempt Pipeline::take_attempt() {
+  return {std::exchange(extraction_, {}), std::exchange(is_split_, false),
+          std::exchange(fields().position, {}),
+          std::exchange(result_.report.position_energies, {})};
+}
+
+void Pipeline::put_back(Attempt&& attempt) {
+  extraction_ = std::move(attempt.extraction);
+  is_split_ = attempt.is_split;
+  fields().position = std::move(attempt.positions);
+  result_.report.position_energies = std::move(attempt.energies);
+}
+
+}  // namespace meshgrain
