@@ -9,6 +9,7 @@
 #include "border/border_sizing.h"
 #include "features/find_features.h"
 #include "features/guide_constraints.h"
+#include "finish/box_cells.h"
 #include "mesh/frame.h"
 #include "mesh/surface_size.h"
 #include "mesh/vertex_faces.h"
@@ -64,10 +65,11 @@ class Pipeline {
 
   /// Quads that are twisted even then leave the surface.
   void untwist_faces();
-  /// Where the faces have lost some of the surface, other ones are made; where much of it is lost
-  /// all the same, the lattice of pure quads becomes as fine as these. Returns whether it did: the
-  /// faces are to be made once more, then. Else lattices that start elsewhere are tried where some
-  /// is lost, quads are nearly flat, or faces pass through each other and the surface does not.
+  /// Where the faces have lost some of the surface all the same, and others that are made then have
+  /// flaws, too, the lattice of pure quads becomes as fine as these. Returns whether it did: the
+  /// faces are to be made once more, then. Else lattices that start elsewhere are tried where there
+  /// are flaws: some of the surface is lost, quads are nearly flat, or faces pass through each
+  /// other and the surface does not.
   bool mend_flaws();
   /// Where refine_for_details() leaves inverted quads all the same, what there would be without it:
   /// that is kept if it has fewer of these and of crossings together.
@@ -156,29 +158,27 @@ class Pipeline {
     bool is_considerably_less_than(const LostSurface& other) const;
   };
   LostSurface lost_surface() const;
-  // What is hardly to be seen; mending the faces loses some more. And what is worth a lattice as
-  // fine as the quads.
-  static constexpr double little_lost_before = 5, little_lost = 8, much_lost = 15;
+  // What is hardly to be seen, before and after the faces are mended, which loses some more.
+  static constexpr double little_lost_before = 5, little_lost = 8;
   /// What other fields may do without.
   struct Flaws {
     double lost_faces = 0;  // if these are not little
     float flatness = 0;     // of the flattest quad, if that is nearly flat
     std::size_t faults = 0;
+    bool any() const;
     bool are_fewer_than(const Flaws& other) const;
   };
-  Flaws flaws(double lost_faces) const;
-  /// Whether the surface passes through itself.
-  bool surface_crosses();
-  /// Whether they are to be left alone.
-  bool are_few(const Flaws& flaws);
+  Flaws flaws(double lost_faces);
+  /// Pairs of faces that pass through each other farther from where the surface does than a face.
+  std::size_t own_crossings();
   /// Limbs become thinner than they are, and are lost, where the rows around them are as many as
   /// at their ends: a lattice that has all its singularities there lets rows end.
   void keep_singularities_around(const std::vector<Index>& nodes);
   /// Makes the faces once more, so, if they have lost something when all is done. Returns how many
   /// are lost in the end.
   double recover_lost_surface();
-  /// Until there are few.
-  void try_other_starts(double lost_faces);
+  /// Until there are no flaws, of those `before`.
+  void try_other_starts(Flaws before);
   /// Irregular vertices may be the price: not for those who want fewer of them than by default.
   bool may_be_irregular() const;
   /// Whether what is wrong with the faces is to be seen, and other ones would not take too long.
@@ -245,9 +245,9 @@ class Pipeline {
   bool is_coarsened_ = false;  // its creases are marked since then, and
   bool had_marks_ = false;     // others were before
   Mesh surface_;
-  std::optional<bool> surface_crosses_;  // itself, once that is asked for
-  VertexFaces around_;                   // its vertices, once it has a graph
-  SurfaceSize input_size_{};             // of the surface before it is refined
+  std::optional<BoxCells> crossings_of_surface_;  // once that is asked for
+  VertexFaces around_;                            // its vertices, once it has a graph
+  SurfaceSize input_size_{};                      // of the surface before it is refined
   Hierarchy hierarchy_;
   double area_ = 0;
   EdgeLength lengths_;

@@ -1,7 +1,9 @@
 // What is wrong with the faces, and the other ways that are tried then.
 
 #include <algorithm>
+#include <array>
 #include <utility>
+#include <vector>
 
 #include "finish/bare_ends.h"
 #include "finish/crossings.h"
@@ -44,12 +46,11 @@ bool Pipeline::may_be_irregular() const {
   return regularity_ <= RemeshOptions().regularity;
 }
 
-Pipeline::Flaws Pipeline::flaws(double lost_faces) const {
+Pipeline::Flaws Pipeline::flaws(double lost_faces) {
   constexpr float nearly_flat = 0.1f;  // beyond it a quad is as good as any
   const float flatness = std::max(0.0f, nearly_flat - least_jacobian(extraction_.mesh));
   const std::size_t inverted = flatness > 0 ? inverted_faces() : 0;
-  return {lost_faces <= little_lost ? 0 : lost_faces, flatness,
-          inverted + find_crossings(extraction_.mesh, context_).size()};
+  return {lost_faces <= little_lost ? 0 : lost_faces, flatness, inverted + own_crossings()};
 }
 
 bool Pipeline::Flaws::are_fewer_than(const Flaws& other) const {
@@ -57,22 +58,33 @@ bool Pipeline::Flaws::are_fewer_than(const Flaws& other) const {
          (lost_faces < other.lost_faces || flatness < other.flatness || faults < other.faults);
 }
 
-bool Pipeline::surface_crosses() {
-  if (is_cloud_) return true;  // as far as is known
-  if (!surface_crosses_) {
+std::size_t Pipeline::own_crossings() {
+  const Mesh& mesh = extraction_.mesh;
+  if (is_cloud_) return 0;  // as far as is known
+  const auto meeting = [](const Mesh& of, const std::array<Index, 2>& pair) {
+    return face_box(of, pair[0]).intersection(face_box(of, pair[1]));
+  };
+  const auto crossings = find_crossings(mesh, context_);
+  if (crossings.empty()) return 0;
+  if (!crossings_of_surface_) {
+    const double side = target_.face_side(area_);
     constexpr double deep = 0.01;  // sides: rounding makes for less
-    const double least = deep * target_.face_side(area_);
-    surface_crosses_ = std::ranges::any_of(find_crossings(surface_, context_), [&](auto pair) {
-      return penetration(surface_, pair[0], pair[1]) > least;
-    });
+    std::vector<Eigen::AlignedBox3f> boxes;
+    for (const auto& pair : find_crossings(surface_, context_)) {
+      if (penetration(surface_, pair[0], pair[1]) < deep * side) continue;
+      const Eigen::AlignedBox3f box = meeting(surface_, pair);
+      const Vec3 margin = Vec3::Constant(static_cast<float>(side));
+      boxes.emplace_back(box.min() - margin, box.max() + margin);
+    }
+    crossings_of_surface_.emplace(boxes, static_cast<float>(side));
   }
-  return *surface_crosses_;
+  return static_cast<std::size_t>(std::ranges::count_if(crossings, [&](const auto& pair) {
+    return !crossings_of_surface_->touches(meeting(mesh, pair));
+  }));
 }
 
-bool Pipeline::are_few(const Flaws& flaws) {
-  if (flaws.lost_faces > 0 || flaws.flatness > 0) return false;
-  // Where the surface passes through itself, so must what covers it.
-  return flaws.faults == 0 || surface_crosses();
+bool Pipeline::Flaws::any() const {
+  return lost_faces > 0 || flatness > 0 || faults > 0;
 }
 
 void Pipeline::smooth_faces() {
@@ -114,8 +126,7 @@ double Pipeline::recover_lost_surface() {
     now = lost_surface();
     if (!now.is_considerably_less_than(lost)) return false;
     const Flaws after = flaws(now.faces);
-    return after.flatness <= before.flatness &&
-           (after.faults <= before.faults || surface_crosses());
+    return after.flatness <= before.flatness && after.faults <= before.faults;
   });
   return is_better ? now.faces : lost.faces;
 }
@@ -141,12 +152,13 @@ void Pipeline::keep_singularities_around(const std::vector<Index>& nodes) {
 
 bool Pipeline::mend_flaws() {
   if (!may_make_others()) return false;
-  const double lost_faces = recover_lost_surface();
-  // It costs half as many irregular vertices again.
+  const Flaws left = flaws(recover_lost_surface());
+  // A finer lattice costs half as many irregular vertices again.
   const bool is_coarse = lattice_faces_ == OutputFaces::quads;
-  if (lost_faces < much_lost || !may_be_irregular() || !is_coarse || !may_have_fine_lattice() ||
+  const bool has_lost = !keeps_singularities_.empty();  // or had
+  if (!left.any() || !has_lost || !is_coarse || !may_have_fine_lattice() ||
       has_branches(border_edges(surface_, context_).size())) {
-    try_other_starts(lost_faces);
+    try_other_starts(left);
     return false;
   }
   take_attempt();
@@ -161,10 +173,9 @@ bool Pipeline::mend_flaws() {
   return true;
 }
 
-void Pipeline::try_other_starts(double lost_faces) {
+void Pipeline::try_other_starts(Flaws before) {
   constexpr std::uint64_t most = 2;
-  Flaws before = flaws(lost_faces);
-  for (std::uint64_t start = 1; start <= most && !are_few(before); ++start) {
+  for (std::uint64_t start = 1; start <= most && before.any(); ++start) {
     const std::uint64_t kept = std::exchange(other_start_, start);
     OrientationField orientation = fields().orientation;
     auto energies = result_.report.orientation_energies;
