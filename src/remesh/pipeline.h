@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "border/border_loops.h"
@@ -165,12 +167,13 @@ class Pipeline {
     double lost_faces = 0;  // if these are not little
     float flatness = 0;     // of the flattest quad, if that is nearly flat
     std::size_t faults = 0;
+    std::size_t all_faults = 0;  // with crossings where the surface crosses itself, too
     bool any() const;
     bool are_fewer_than(const Flaws& other) const;
   };
   Flaws flaws(double lost_faces);
-  /// Pairs of faces that pass through each other farther from where the surface does than a face.
-  std::size_t own_crossings();
+  /// Those of the faces that are farther than a face from where the surface passes through itself.
+  std::size_t count_own(std::span<const std::array<Index, 2>> crossings);
   /// Limbs become thinner than they are, and are lost, where the rows around them are as many as
   /// at their ends: a lattice that has all its singularities there lets rows end.
   void keep_singularities_around(const std::vector<Index>& nodes);

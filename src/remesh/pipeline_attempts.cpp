@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -50,22 +51,22 @@ Pipeline::Flaws Pipeline::flaws(double lost_faces) {
   constexpr float nearly_flat = 0.1f;  // beyond it a quad is as good as any
   const float flatness = std::max(0.0f, nearly_flat - least_jacobian(extraction_.mesh));
   const std::size_t inverted = flatness > 0 ? inverted_faces() : 0;
-  return {lost_faces <= little_lost ? 0 : lost_faces, flatness, inverted + own_crossings()};
+  const auto crossings = find_crossings(extraction_.mesh, context_);
+  return {lost_faces <= little_lost ? 0 : lost_faces, flatness, inverted + count_own(crossings),
+          inverted + crossings.size()};
 }
 
 bool Pipeline::Flaws::are_fewer_than(const Flaws& other) const {
   return lost_faces <= other.lost_faces && flatness <= other.flatness && faults <= other.faults &&
+         all_faults <= other.all_faults &&
          (lost_faces < other.lost_faces || flatness < other.flatness || faults < other.faults);
 }
 
-std::size_t Pipeline::own_crossings() {
-  const Mesh& mesh = extraction_.mesh;
-  if (is_cloud_) return 0;  // as far as is known
+std::size_t Pipeline::count_own(std::span<const std::array<Index, 2>> crossings) {
+  if (is_cloud_ || crossings.empty()) return 0;  // as far as is known
   const auto meeting = [](const Mesh& of, const std::array<Index, 2>& pair) {
     return face_box(of, pair[0]).intersection(face_box(of, pair[1]));
   };
-  const auto crossings = find_crossings(mesh, context_);
-  if (crossings.empty()) return 0;
   if (!crossings_of_surface_) {
     const double side = target_.face_side(area_);
     constexpr double deep = 0.01;  // sides: rounding makes for less
@@ -79,7 +80,7 @@ std::size_t Pipeline::own_crossings() {
     crossings_of_surface_.emplace(boxes, static_cast<float>(side));
   }
   return static_cast<std::size_t>(std::ranges::count_if(crossings, [&](const auto& pair) {
-    return !crossings_of_surface_->touches(meeting(mesh, pair));
+    return !crossings_of_surface_->touches(meeting(extraction_.mesh, pair));
   }));
 }
 
