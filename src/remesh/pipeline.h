@@ -180,7 +180,7 @@ class Pipeline {
   /// Makes the faces once more, so, if they have lost something when all is done. Returns how many
   /// are lost in the end.
   double recover_lost_surface();
-  /// Until there are no flaws, of those `before`.
+  /// Until none are left of the flaws that there were `before`.
   void try_other_starts(Flaws before);
   /// Irregular vertices may be the price: not for those who want fewer of them than by default.
   bool may_be_irregular() const;
