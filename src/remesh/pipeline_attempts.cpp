@@ -63,7 +63,7 @@ bool Pipeline::Flaws::are_fewer_than(const Flaws& other) const {
 }
 
 std::size_t Pipeline::count_own(std::span<const std::array<Index, 2>> crossings) {
-  if (is_cloud_ || crossings.empty()) return 0;  // as far as is known
+  if (crossings.empty() || is_cloud_) return 0;  // of a cloud it is not known
   const auto meeting = [](const Mesh& of, const std::array<Index, 2>& pair) {
     return face_box(of, pair[0]).intersection(face_box(of, pair[1]));
   };
@@ -90,10 +90,13 @@ bool Pipeline::Flaws::any() const {
 
 void Pipeline::smooth_faces() {
   constexpr int most_attempts = 3;
-  const bool may_change = may_make_others() && may_be_irregular();
+  if (!may_make_others() || !may_be_irregular()) {
+    smooth_faces_if({});
+    return;
+  }
   Attempt best;
   LostSurface least;
-  for (int attempt = 0; may_change && attempt < most_attempts; ++attempt) {
+  for (int attempt = 0; attempt < most_attempts; ++attempt) {
     if (attempt > 0 && !make_faces_again()) break;
     Extraction rough = extraction_;
     const bool was_split = is_split_;
@@ -112,7 +115,7 @@ void Pipeline::smooth_faces() {
       least = std::move(lost);
     }
   }
-  if (may_change) put_back(std::move(best));
+  put_back(std::move(best));
   smooth_faces_if({});
 }
 
@@ -162,7 +165,7 @@ bool Pipeline::mend_flaws() {
     try_other_starts(left);
     return false;
   }
-  take_attempt();
+  put_back({});  // nothing of them is needed any more, nor are nodes of that lattice
   keeps_singularities_.clear();
   aim_at(OutputFaces::quad_dominant);
   const std::size_t nodes = graph().size();
