@@ -4,6 +4,8 @@
 #include <numbers>
 
 #include "extract/cancel_singularities.h"
+#include "extract/free_points.h"
+#include "extract/lattice_pieces.h"
 #include "extract/lattice_triangle.h"
 #include "made_lattice.h"
 #include "meshgrain/shapes.h"
@@ -88,6 +90,39 @@ TEST(LatticeRepair, FindsRoomForTheApexesOfCones) {
   }
   EXPECT_GT(cones, 100);
   EXPECT_LE(flawed, cones / 16);  // single changes alone leave 29 of 159
+}
+
+/// Halves of cells have none; in a lattice three times as fine there is one in the middle of each.
+TEST(FreePoints, LieInTheMiddleOfLargeTriangles) {
+  LatticeMesh lattice = made::lattice(sample_shape("plate"), 4, 0.125f);
+  LatticePieces pieces(lattice);
+  const auto look_at_all = [&](auto&& look) {
+    std::size_t count = 0;
+    for (Index h = 0; h < lattice.map.halfedges(); ++h) {
+      if (!lattice.stands_for_triangle(h) || !lattice.triangle(h).is_plane()) continue;
+      ++count;
+      look(h, find_free_point(lattice, pieces, h));
+    }
+    EXPECT_GT(count, 50u);
+  };
+  look_at_all([&](Index h, const auto& point) {
+    EXPECT_FALSE(may_have_free_point(lattice.triangle(h)));
+    EXPECT_FALSE(point.has_value());
+  });
+  constexpr int finer = 3;
+  for (Jump& jump : lattice.jumps) {
+    for (int& t : jump.t) t *= finer;
+  }
+  look_at_all([&](Index h, const auto& point) {
+    EXPECT_TRUE(may_have_free_point(lattice.triangle(h)));
+    ASSERT_TRUE(point.has_value());
+    EXPECT_EQ(point->edge, h);
+    const Jump apex = composed(lattice.jump(h), lattice.jump(lattice.map.next(h)), lattice.posy);
+    for (int k = 0; k < 2; ++k) {
+      EXPECT_EQ(3 * point->t[k], lattice.jump(h).t[k] + apex.t[k]);
+      EXPECT_EQ(point->t[k] + point->to_apex.t[k], apex.t[k]);
+    }
+  });
 }
 
 }  // namespace

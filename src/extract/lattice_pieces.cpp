@@ -47,6 +47,23 @@ std::array<LatticePiece, 2> LatticePieces::swung(Index h) const {
   return result;
 }
 
+void LatticePieces::collapsed(Index h, std::vector<LatticePiece>& pieces) const {
+  const Index t = PolygonMap::twin(h), a = map_.origin(h);
+  const int posy = lattice_.posy;
+  const Jump ab = lattice_.jump(h), ba = reversed(ab, posy);
+  pieces.clear();
+  for (Index g = map_.around(t); g != t; g = map_.around(g)) {
+    if (lattice_.holes[g]) continue;
+    LatticePiece moved = piece(g);
+    if (moved.corners[1] == a || moved.corners[2] == a) continue;
+    moved.corners[0] = a;
+    auto& around = moved.lattice.around;
+    around[0] = composed(ab, around[0], posy);
+    around[2] = composed(around[2], ba, posy);
+    pieces.push_back(moved);
+  }
+}
+
 bool LatticePieces::keep_angles(std::span<const LatticePiece> before,
                                 std::span<const LatticePiece> after, Index gone) {
   changes_.clear();

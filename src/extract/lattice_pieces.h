@@ -48,6 +48,9 @@ class LatticePieces {
   /// The triangles left and right of h once it has that jump.
   std::array<LatticePiece, 2> swung(Index h) const;
 
+  /// The triangles around the target of h once that is at h's origin.
+  void collapsed(Index h, std::vector<LatticePiece>& pieces) const;
+
   /// Whether every vertex keeps its angle in the lattice when some triangles take the place of
   /// others, or gets the one that it should have. Else a star could come to go around twice though
   /// none of its triangles is turned over. `gone` is not looked at.

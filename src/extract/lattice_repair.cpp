@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <set>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "extract/apex_leader.h"
+#include "extract/free_points.h"
 #include "extract/lattice_pieces.h"
 #include "util/collect.h"
 #include "util/edge_of.h"
@@ -69,21 +70,22 @@ class LatticeRepair {
     std::vector<std::uint8_t> whole(map_.halfedges(), 0);
     struct Found {
       Index h;
-      bool is_cone, is_flawed, has_room;
+      bool is_cone, is_flawed, may_have_free_point;
     };
     const auto look = [&](std::size_t begin, std::size_t end, std::vector<Found>& out) {
       for (auto h = static_cast<Index>(begin); h < end; ++h) {
         if (!lattice_.stands_for_triangle(h)) continue;
         const LatticeTriangle triangle = lattice_.triangle(h);
-        const Found found{h, triangle.is_cone(), triangle.flaw() > 0, has_room(triangle)};
-        if (found.is_cone || found.is_flawed || found.has_room) out.push_back(found);
+        const Found found{h, triangle.is_cone(), triangle.flaw() > 0,
+                          may_have_free_point(triangle)};
+        if (found.is_cone || found.is_flawed || found.may_have_free_point) out.push_back(found);
         if (triangle.is_plane() && !found.is_flawed) {
           whole[h] = whole[map_.next(h)] = whole[map_.prev(h)] = 1;
         }
       }
     };
     for (const Found& found : collect<Found>(map_.halfedges(), look, context)) {
-      if (found.has_room) large_.set(found.h);
+      if (found.may_have_free_point) large_.set(found.h);
       Index h = found.h;
       for (int k = 0; k < 3; ++k, h = map_.next(h)) {
         if (found.is_cone) swings_.set(h);
@@ -370,7 +372,7 @@ class LatticeRepair {
       lattice_.for_each_leaving(v, [&](Index g) {
         const Index into = PolygonMap::twin(g);
         if (!lattice_.may_collapse(into)) return;
-        collapsed_star(into, after_);
+        pieces_.collapsed(into, after_);
         const double left = flaws(after_);
         if (left >= least || !pieces_.keep_angles(before_, after_, v)) return;
         least = left;
@@ -386,30 +388,6 @@ class LatticeRepair {
       any = true;
     }
     return any;
-  }
-
-  /// The triangles around the target of h once that is at h's origin.
-  void collapsed_star(Index h, std::vector<Piece>& pieces) const {
-    const Index t = PolygonMap::twin(h), a = map_.origin(h);
-    const int posy = lattice_.posy;
-    const Jump ab = lattice_.jump(h), ba = reversed(ab, posy);
-    pieces.clear();
-    for (Index g = map_.around(t); g != t; g = map_.around(g)) {
-      if (lattice_.holes[g]) continue;
-      Piece moved = pieces_.piece(g);
-      if (moved.corners[1] == a || moved.corners[2] == a) continue;
-      moved.corners[0] = a;
-      auto& around = moved.lattice.around;
-      around[0] = composed(ab, around[0], posy);
-      around[2] = composed(around[2], ba, posy);
-      pieces.push_back(moved);
-    }
-  }
-
-  /// Whether there may be a lattice point inside that has no vertex.
-  static bool has_room(const LatticeTriangle& triangle) {
-    if (triangle.is_cone()) return triangle.flaw() == 0;
-    return triangle.is_plane() && triangle.area() > 2.5;
   }
 
   /// How many times as long an edge is as the way to the first lattice point on it.
@@ -438,95 +416,14 @@ class LatticeRepair {
     if (any) return true;
     const auto count = static_cast<Index>(map_.halfedges());
     for (Index h = large_.take(0, count); h != no_index; h = large_.take(h + 1, count)) {
-      if (!lattice_.stands_for_triangle(h)) continue;
-      const LatticeTriangle triangle = lattice_.triangle(h);
-      if (has_room(triangle)) any = (triangle.is_cone() ? fill_cone(h) : fill_plane(h)) || any;
+      if (!lattice_.stands_for_triangle(h) || !may_have_free_point(lattice_.triangle(h))) continue;
+      const auto point = find_free_point(lattice_, pieces_, h);
+      if (!point) continue;
+      lattice_.insert(point->edge, point->t, point->to_apex);
+      touch_star(map_.target(map_.next(point->edge)));
+      any = true;
     }
     return any;
-  }
-
-  /// The lattice point inside of the triangle between h and the point `top` (both from h's origin)
-  /// that is nearest to `goal`; on the sides towards the top counts as inside. Returns its squared
-  /// distance.
-  double nearest_inside(Index h, const LatticePoint& top, const LatticePoint& goal,
-                        std::array<int, 2>& best) const {
-    const auto b = lattice_.jump(h).t;
-    const auto low = [&](int k) {
-      return static_cast<int>(std::floor(std::min({0.0, top[k], static_cast<double>(b[k])})));
-    };
-    const auto high = [&](int k) {
-      return static_cast<int>(std::ceil(std::max({0.0, top[k], static_cast<double>(b[k])})));
-    };
-    double nearest = 1e30;
-    for (int x = low(0); x <= high(0); ++x) {
-      for (int y = low(1); y <= high(1); ++y) {
-        if ((x == 0 && y == 0) || (x == b[0] && y == b[1])) continue;
-        const double over_edge = b[0] * y - b[1] * x;
-        const double over_right = (top[0] - b[0]) * (y - b[1]) - (top[1] - b[1]) * (x - b[0]);
-        const double over_left = -top[0] * y + top[1] * x;
-        if (over_edge <= 0 || over_right < 0 || over_left < 0) continue;
-        const double distance =
-            lattice_.metric().squared_length(LatticePoint{x - goal[0], y - goal[1]});
-        if (distance >= nearest) continue;
-        nearest = distance;
-        best = {x, y};
-      }
-    }
-    return nearest;
-  }
-
-  bool fill_plane(Index h) {
-    const auto b = lattice_.jump(h).t;
-    const Jump ac = composed(lattice_.jump(h), lattice_.jump(map_.next(h)), lattice_.posy);
-    const LatticePoint c{static_cast<double>(ac.t[0]), static_cast<double>(ac.t[1])};
-    std::array<int, 2> t{0, 0};
-    if (nearest_inside(h, c, {(b[0] + c[0]) / 3, (b[1] + c[1]) / 3}, t) > 1e29) return false;
-    if (t == ac.t) return false;
-    lattice_.insert(h, t, composed(reversed(Jump{0, t}, lattice_.posy), ac, lattice_.posy));
-    touch_star(map_.target(map_.next(h)));
-    return true;
-  }
-
-  /// In a cone, the lattice point nearest to the apex.
-  bool fill_cone(Index h) {
-    double nearest = 1e30;
-    Index edge = no_index;
-    std::array<int, 2> t{0, 0};
-    Index g = h;
-    for (int side = 0; side < 3; ++side, g = map_.next(g)) {
-      const LatticePoint apex = lattice_.triangle(g).apex();
-      std::array<int, 2> found{0, 0};
-      const double distance = nearest_inside(g, apex, apex, found);
-      if (distance >= nearest) continue;
-      nearest = distance;
-      edge = g;
-      t = found;
-    }
-    if (edge == no_index) return false;
-    // Of the three new triangles that on the edge is plane, and one of the others: the jump to the
-    // corner beyond may go by either end of the edge.
-    const int posy = lattice_.posy;
-    const Piece whole = pieces_.piece(edge);
-    const auto [a, b, c] = whole.corners;
-    const auto& [ab, bc, ca] = whole.lattice.around;
-    const Jump ax{0, t}, xa = reversed(ax, posy), xb = composed(xa, ab, posy);
-    double least = 3;
-    const Jump* best = nullptr;
-    const Jump ways[2] = {composed(xb, bc, posy), composed(xa, reversed(ca, posy), posy)};
-    for (const Jump& xc : ways) {
-      if (xc.is_zero()) return false;  // the apex is that corner
-      const std::array<Piece, 3> parts{{{{a, b, no_index}, {posy, {ab, reversed(xb, posy), xa}}},
-                                        {{b, c, no_index}, {posy, {bc, reversed(xc, posy), xb}}},
-                                        {{c, a, no_index}, {posy, {ca, ax, xc}}}}};
-      const double cost = flaws(parts) + 0.01 * lattice_.metric().squared_length(xc.t);
-      if (cost >= least || !pieces_.keep_angles({&whole, 1}, parts)) continue;
-      least = cost;
-      best = &xc;
-    }
-    if (best == nullptr) return false;
-    lattice_.insert(edge, t, *best);
-    touch_star(map_.target(map_.next(edge)));
-    return true;
   }
 
   LatticeMesh& lattice_;
