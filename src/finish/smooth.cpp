@@ -1,11 +1,7 @@
 #include "finish/smooth.h"
 
 #include <Eigen/Geometry>
-#include <array>
-#include <cmath>
-#include <limits>
 #include <map>
-#include <numbers>
 #include <ranges>
 #include <utility>
 
@@ -13,48 +9,21 @@
 #include "finish/face_shape.h"
 #include "finish/fit_to_surface.h"
 #include "finish/local_search.h"
+#include "finish/mean_side.h"
 #include "finish/mend_places.h"
 #include "finish/own_side.h"
 #include "finish/placement.h"
 #include "finish/regular_polygon.h"
+#include "finish/small_holes.h"
 #include "finish/unfold.h"
 #include "finish/untangle.h"
 #include "meshgrain/surface.h"
 #include "util/sort_unique.h"
-#include "util/sum.h"
 
 namespace meshgrain {
 namespace {
 
 constexpr std::size_t grain = 256;
-
-/// The side that all faces would have if their areas were as even as their relative sizes ask for.
-float mean_side(const Mesh& mesh, const EdgeLength& relative, const Context& context) {
-  struct Areas {
-    double faces = 0, wanted = 0;  // wanted: of the regular polygons of side 1 in their places
-
-    Areas operator+(const Areas& o) const { return {faces + o.faces, wanted + o.wanted}; }
-  };
-  const auto unit_area = [](std::size_t n) {
-    const auto count = static_cast<double>(n);
-    return n == 4 ? 1 : count / (4 * std::tan(std::numbers::pi / count));
-  };
-  const Areas areas = sum_over_ranges(
-      mesh.faces.size(),
-      [&](std::size_t begin, std::size_t end) {
-        Areas sum;
-        for (std::size_t f = begin; f < end; ++f) {
-          const auto face = mesh.faces[f];
-          double size = 0;
-          for (const Index v : face) size += relative[v] / static_cast<double>(face.size());
-          sum.faces += area_vector(face, mesh.positions).norm();
-          sum.wanted += size * size * unit_area(face.size());
-        }
-        return sum;
-      },
-      context);
-  return areas.wanted > 0 ? static_cast<float>(std::sqrt(areas.faces / areas.wanted)) : 0.0f;
-}
 
 /// Faces in batches in which all have as many corners.
 template <typename Which>
@@ -90,9 +59,11 @@ class Smoother {
   /// `put_on`: exactly onto the surface, at the end.
   void iterate(int iterations, bool put_on);
 
-  /// Lets the rims of holes that are far smaller than a face become a little larger: what is around
-  /// them could have no shape else.
-  void open_small_holes(const FeatureLines& lines);
+  /// See the function.
+  void open_small_holes(const FeatureLines& lines) {
+    meshgrain::open_small_holes(extraction_, around_, lines, mean_side(mesh_, sizes_, context_),
+                                placement_);
+  }
 
   /// Pulls the mesh out to the ends of fingers and horns, and holds it there.
   void hold_ends();
@@ -316,39 +287,6 @@ void Smoother::iterate(int iterations, bool put_on) {
         next);
     previous_.swap(mesh_.positions);
     mesh_.positions.swap(next);
-  }
-}
-
-void Smoother::open_small_holes(const FeatureLines& lines) {
-  constexpr float longest = 1, radius = 0.2f;  // sides of a face
-  const float side = mean_side(mesh_, sizes_, context_);
-  struct Rim {
-    bool is_small = false;
-    Vec3 middle = Vec3::Zero();
-  };
-  std::vector<Rim> rims(lines.size());
-  for (std::size_t line = 0; line < lines.size(); ++line) {
-    if (!lines.is_closed(line)) continue;
-    const Index begin = lines.begin(line), last = lines.end(line) - 1;
-    float length = 0;
-    for (Index k = begin; k < last; ++k) {
-      length += (lines.positions[k + 1] - lines.positions[k]).norm();
-      rims[line].middle += lines.positions[k];
-    }
-    rims[line].middle /= static_cast<float>(last - begin);
-    rims[line].is_small = length < longest * side;
-  }
-  // A piece as small as that could not be any larger.
-  for (const auto& [a, b, line] : extraction_.line_edges) {
-    if (around_[a].size() < 2 || around_[b].size() < 2) rims[line].is_small = false;
-  }
-  for (const auto& [a, b, line] : extraction_.line_edges) {
-    if (!rims[line].is_small) continue;
-    for (const Index v : {a, b}) {
-      if (!placement_.release(v)) continue;
-      placement_.tether(v, mesh_.positions[v], extraction_.nodes[v], rims[line].middle,
-                        radius * side);
-    }
   }
 }
 
