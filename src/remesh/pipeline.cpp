@@ -314,6 +314,7 @@ void Pipeline::change_target(const RemeshOptions& options) {
   choose_lattice();
   size_faces();
   keeps_singularities_.clear();
+  crossings_of_surface_.reset();  // what is near to them depends on the size of a face
   if (std::exchange(other_start_, 0) == 0) return;
   complete_levels();
   orient();

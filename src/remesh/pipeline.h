@@ -125,14 +125,20 @@ class Pipeline {
     bool is_split;
     PositionField positions;
     std::vector<EnergyRecord> energies;
+    OutputFaces lattice_faces;
+    Target target;
+    EdgeLength lengths;
+    std::vector<std::uint8_t> keeps_singularities;
   };
+  /// Leaves no faces, but all that others can be made from.
   Attempt take_attempt();
   void put_back(Attempt&& attempt);
   /// As all is now. Returns whether there are any.
   bool make_faces_again();
-  /// Makes the faces once more and smooths them. Keeps what was before, and returns false, unless
-  /// these are better.
-  bool try_again(const std::function<bool()>& is_better);
+  /// Makes the faces once more, after a change of what they are made from, and smooths them. Keeps
+  /// what was before, and returns false, unless these are better.
+  bool try_again(const std::function<bool()>& is_better,
+                 const std::function<void()>& change = {});
 
   /// Returns false if they are not worth mending, and have not been.
   bool smooth_faces_if(const std::function<bool()>& is_worth_mending);

@@ -165,7 +165,7 @@ bool Pipeline::mend_flaws() {
     try_other_starts(left);
     return false;
   }
-  put_back({});  // nothing of them is needed any more, nor are nodes of that lattice
+  take_attempt();  // nothing of it is needed any more
   keeps_singularities_.clear();
   aim_at(OutputFaces::quad_dominant);
   const std::size_t nodes = graph().size();
@@ -205,8 +205,7 @@ void Pipeline::try_coarser_lattice() {
   constexpr double hopeless = 0.2;
   if (inverted_faces() == 0 || share_of_holes() > hopeless) return;
   const std::size_t before = faults();
-  aim_at(options_.faces);
-  try_again([&] { return faults() < before; });
+  try_again([&] { return faults() < before; }, [&] { aim_at(options_.faces); });
 }
 
 void Pipeline::try_less_regular() {
@@ -233,8 +232,10 @@ bool Pipeline::make_faces_again() {
   return !extraction_.mesh.faces.empty();
 }
 
-bool Pipeline::try_again(const std::function<bool()>& is_better) {
+bool Pipeline::try_again(const std::function<bool()>& is_better,
+                         const std::function<void()>& change) {
   Attempt before = take_attempt();
+  if (change) change();
   if (make_faces_again()) {
     smooth_faces();
     untwist_faces();
@@ -245,9 +246,14 @@ bool Pipeline::try_again(const std::function<bool()>& is_better) {
 }
 
 Pipeline::Attempt Pipeline::take_attempt() {
-  return {std::exchange(extraction_, {}), std::exchange(is_split_, false),
+  return {std::exchange(extraction_, {}),
+          std::exchange(is_split_, false),
           std::exchange(fields().position, {}),
-          std::exchange(result_.report.position_energies, {})};
+          std::exchange(result_.report.position_energies, {}),
+          lattice_faces_,
+          target_,
+          lengths_,
+          keeps_singularities_};
 }
 
 void Pipeline::put_back(Attempt&& attempt) {
@@ -255,6 +261,10 @@ void Pipeline::put_back(Attempt&& attempt) {
   is_split_ = attempt.is_split;
   fields().position = std::move(attempt.positions);
   result_.report.position_energies = std::move(attempt.energies);
+  lattice_faces_ = attempt.lattice_faces;
+  target_ = attempt.target;
+  lengths_ = std::move(attempt.lengths);
+  keeps_singularities_ = std::move(attempt.keeps_singularities);
 }
 
 }  // namespace meshgrain
