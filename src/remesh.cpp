@@ -15,8 +15,30 @@
 namespace meshgrain {
 namespace {
 
+void check_given(const Fields& fields, int posy) {
+  const int rosy = fields.orientation.rosy;
+  const PositionField& position = fields.position;
+  const bool has_positions = !position.points.empty();
+  const std::size_t nodes = fields.surface.positions.size();
+  const bool has_lengths =
+      position.edge_length.uniform() || position.edge_length.values.size() == nodes;
+  if (fields.orientation.directions.size() != nodes ||
+      (has_positions && (position.points.size() != nodes || !has_lengths))) {
+    throw Error("the given fields need a value at every vertex of their surface");
+  }
+  if (rosy < 1 || posy % rosy != 0) {
+    throw Error("the given orientations have symmetry " + std::to_string(rosy) +
+                ", which does not fit positions of symmetry " + std::to_string(posy));
+  }
+  if (has_positions && position.posy != posy) {
+    throw Error("the given positions have symmetry " + std::to_string(position.posy) + ", not " +
+                std::to_string(posy) + " as the faces that are asked for");
+  }
+}
+
 void check(const RemeshOptions& options) {
   const int posy = posy_of(options.faces);
+  if (options.fields != nullptr) check_given(*options.fields, posy);
   if (options.rosy != 0 && posy % options.rosy != 0) {
     throw Error("orientations of symmetry " + std::to_string(options.rosy) +
                 " do not fit positions of symmetry " + std::to_string(posy) +
@@ -30,6 +52,12 @@ void check(const RemeshOptions& options) {
   }
   if (!(options.min_component >= 0) || !std::isfinite(options.min_component)) {
     throw Error("the least number of faces of a piece must not be negative");
+  }
+  const Sizing::Kind sizing = options.sizing.kind;
+  if (options.graph.nodes == GraphNodes::faces &&
+      (sizing == Sizing::Kind::values || sizing == Sizing::Kind::density ||
+       sizing == Sizing::Kind::paint)) {
+    throw Error("sizes by value are those of the input's vertices, not of its faces");
   }
   if (!(options.sizing.grading > 1)) throw Error("the grading of sizes must be larger than 1");
   if (options.smoothing < 0) throw Error("the number of smoothing iterations must not be negative");

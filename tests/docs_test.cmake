@@ -1,6 +1,7 @@
 # Checks the documents: cmake -D ROOT=<repository> -P docs_test.cmake
 #   - links and images of README.md, CONTRIBUTING.md and docs/*.md that are not to other sites resolve;
 #   - files and folders that they name in backticks exist;
+#   - CONTRIBUTING.md says of every folder of src/ what it is;
 #   - tests that docs/method.md names exist, and so do long options of README.md and docs/method.md.
 cmake_minimum_required(VERSION 3.22)
 
@@ -70,6 +71,15 @@ foreach(document IN LISTS documents)
       string(REGEX REPLACE "^[ `]" "" option "${option}")
       check("${option};IN_LIST;options" "${document}: there is no option ${option}")
     endforeach()
+  endif()
+endforeach()
+
+file(READ ${ROOT}/CONTRIBUTING.md text)
+file(GLOB folders RELATIVE ${ROOT} ${ROOT}/src/*)
+foreach(folder IN LISTS folders)
+  if(IS_DIRECTORY ${ROOT}/${folder})
+    string(FIND "${text}" "${folder}/" at)
+    check("NOT;at;EQUAL;-1" "CONTRIBUTING.md does not say what ${folder} is")
   endif()
 endforeach()
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <ranges>
+#include <utility>
 
 #include "extract/add_strips.h"
 #include "extract/collect_faces.h"
@@ -291,6 +293,43 @@ TEST(MakeManifold, SplitsAVertexBetweenFans) {
   EXPECT_EQ(s.non_manifold_vertices, 0u);
   EXPECT_EQ(s.components, 2u);
   EXPECT_EQ(e.nodes.size(), 6u);
+}
+
+TEST(MakeManifold, LinesAndCornersFollowTheCopies) {
+  Extraction e = made_extraction(
+      {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}, {2, 0, 1}, {2, 1, 1}},
+      {{0, 1, 2}, {0, 3, 4}, {1, 2, 5}, {1, 2, 6}});
+  e.line_edges = {{0, 1, 0}, {3, 0, 1}, {1, 2, 2}, {1, 5, 3}, {2, 6, 4}};
+  e.corners = {0};
+  EXPECT_EQ(make_manifold(e), 2u);  // the second and the third on the edge from 1 to 2
+  const auto at = [&](const Vec3& p) {
+    std::vector<Index> found;
+    for (Index v = 0; v < e.mesh.positions.size(); ++v) {
+      if (e.mesh.positions[v] == p) found.push_back(v);
+    }
+    return found;
+  };
+  EXPECT_EQ(e.corners, at({0, 0, 0}));
+  EXPECT_EQ(e.corners.size(), 2u);
+  ASSERT_EQ(e.line_edges.size(), 3u) << "those of the faces that were dropped went with them";
+  for (const auto& [a, b, line] : e.line_edges) {
+    const bool is_edge = std::ranges::any_of(std::views::iota(std::size_t{0}, e.mesh.faces.size()),
+                                             [&](std::size_t f) {
+                                               const auto face = std::as_const(e.mesh.faces)[f];
+                                               return std::ranges::find(face, a) != face.end() &&
+                                                      std::ranges::find(face, b) != face.end();
+                                             });
+    EXPECT_TRUE(is_edge) << line;
+  }
+  EXPECT_EQ(e.line_edges[1].a, at({-1, 0, 0})[0]) << "ahead as before";
+}
+
+TEST(SplitIntoQuads, LeavesOutLinesThatNoFaceHas) {
+  Extraction e = made_extraction({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 5, 5}}, {{0, 1, 2}});
+  e.line_edges = {{0, 1, 0}, {0, 3, 1}, {2, 3, 2}};
+  split_into_quads(e);
+  ASSERT_EQ(e.line_edges.size(), 2u);
+  for (const LineEdge& edge : e.line_edges) EXPECT_EQ(edge.line, 0u);
 }
 
 /// Quads with a border that is a line, and a corner on it.

@@ -12,6 +12,7 @@
 #include "meshgrain/error.h"
 #include "meshgrain/io.h"
 #include "meshgrain/normals.h"
+#include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
 #include "util/platform.h"
 
@@ -168,6 +169,40 @@ TEST_F(FieldsFile, RefusesWhatIsWrong) {
                      "-1\n" +
                      seven),
             "the edge length -1 is not positive");
+  EXPECT_EQ(error_of("ply\nformat ascii 1.0\ncomment rosy 4\ncomment posy 4\ncomment edge_length "
+                     "1e300\n" +
+                     seven),
+            "the header's comment \"edge_length 1e300\" is not a number");
+}
+
+TEST(GivenFields, MustFitWhatIsAskedFor) {
+  const Mesh sphere = sample_shape("sphere", 0.5);
+  RemeshOptions options;
+  options.face_count = 200;
+  const Fields made = remesh(sphere, options).fields;
+  const auto is_refused = [&](const Fields& fields, OutputFaces wanted = OutputFaces::quads) {
+    options.fields = &fields;
+    options.faces = wanted;
+    try {
+      remesh(sphere, options);
+    } catch (const Error&) {
+      return true;
+    }
+    return false;
+  };
+  EXPECT_FALSE(is_refused(made));
+  EXPECT_TRUE(is_refused(made, OutputFaces::triangles));
+  Fields fields = made;
+  fields.orientation.rosy = 6;
+  EXPECT_TRUE(is_refused(fields));
+  fields.orientation.rosy = 0;
+  EXPECT_TRUE(is_refused(fields));
+  fields = made;
+  fields.position.points.pop_back();
+  EXPECT_TRUE(is_refused(fields));
+  fields = made;
+  fields.orientation.directions.pop_back();
+  EXPECT_TRUE(is_refused(fields));
 }
 
 TEST_F(FieldsFile, RefusesToWriteWhatDoesNotFit) {

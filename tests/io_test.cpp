@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "io/output.h"
 #include "mesh/weld.h"
 #include "meshgrain/error.h"
 #include "meshgrain/shapes.h"
@@ -864,6 +865,12 @@ TEST_F(Io, ContentDecidesBeforeTheName) {
       1u);
 }
 
+TEST_F(Io, NamesThatNoFileCanHaveAreErrorsToo) {
+  const std::string name(5000, 's');
+  const std::string what = error_of("a.aln", "1\n" + name + "\n0\n");
+  EXPECT_TRUE(what.starts_with("a.aln: line 2: the scan \"sss")) << what;
+}
+
 TEST_F(Io, WhatCannotBeReadIsNamed) {
   EXPECT_EQ(error_of_reading("missing.obj"), "missing.obj: there is no such file");
   EXPECT_EQ(error_of("empty.obj", ""), "empty.obj: the file is empty");
@@ -1023,6 +1030,26 @@ TEST_F(Io, AWriteReplacesTheOldFile) {
   write_mesh(path, sample());
   EXPECT_EQ(read_mesh(path).positions.size(), 5u);
   EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(Io, AWriteGoesWhereALinkLeads) {
+  const fs::path path = file("real.obj", "old"), link = folder_ / "link.obj";
+  std::error_code error;
+  fs::create_symlink(path, link, error);
+  if (error) GTEST_SKIP() << "links cannot be made here";
+  write_mesh(link, sample());
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(read_mesh(path).positions.size(), 5u);
+  EXPECT_EQ(files(), 2u);
+}
+
+TEST_F(Io, DevicesAreWrittenToAndStay) {
+  const fs::path device = "/dev/null";
+  if (!fs::is_character_file(device)) GTEST_SKIP() << "there is no such device here";
+  io::Output output(device);
+  output.write("gone");
+  output.commit();
+  EXPECT_TRUE(fs::is_character_file(device));
 }
 
 TEST_F(Io, CheckWritableSaysWhatWritingWould) {

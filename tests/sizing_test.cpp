@@ -313,6 +313,27 @@ INSTANTIATE_TEST_SUITE_P(Shapes, PaintedHalves,
                                           testing::ValuesIn(kinds),
                                           testing::Values(std::size_t{1000}, std::size_t{5000})));
 
+/// With one node a face, and more vertices than faces.
+TEST(Sizing, FacesAsNodesHaveSizesToo) {
+  Mesh loose;
+  for (int k = 0; k < 40; ++k) {
+    const auto x = static_cast<float>(2 * k);
+    const auto first = static_cast<Index>(loose.positions.size());
+    loose.positions.insert(loose.positions.end(),
+                           {Vec3(x, 0, 0), Vec3(x + 1, 0, 0), Vec3(x, 1, 0)});
+    loose.faces.push_back(std::array<Index, 3>{first, first + 1, first + 2});
+  }
+  RemeshOptions options;
+  options.graph.nodes = GraphNodes::faces;
+  options.sizing.adaptive = 1;
+  EXPECT_NO_THROW(remesh(loose, options));
+  Mesh plate = sample_shape("plate", 0.5);
+  options.sizing = {};
+  options.sizing.kind = Sizing::Kind::density;
+  plate.values.assign(plate.positions.size(), 1);
+  EXPECT_THROW(remesh(plate, options), Error);
+}
+
 TEST(Painted, NumbersMustBePositiveAndPaintInBounds) {
   Mesh mesh = sample_shape("plate", 0.5);
   RemeshOptions options;

@@ -500,6 +500,15 @@ TEST(Solver, RefusesWhatMakesNoSense) {
   EXPECT_THROW(PositionSolver::create(shape.hierarchy, shape.field(4), 0.1f, position), Error);
   position.posy = 4;
   EXPECT_THROW(PositionSolver::create(shape.hierarchy, shape.field(4), 0.0f, position), Error);
+  OrientationField field = shape.field(4);
+  field.rosy = 0;
+  EXPECT_THROW(PositionSolver::create(shape.hierarchy, field, 0.1f, position), Error);
+  field.rosy = 4;
+  field.directions.pop_back();
+  EXPECT_THROW(PositionSolver::create(shape.hierarchy, field, 0.1f, position), Error);
+  const EdgeLength two_lengths(std::vector<float>{0.1f, 0.1f});
+  EXPECT_THROW(PositionSolver::create(shape.hierarchy, shape.field(4), two_lengths, position),
+               Error);
   const OrientationConstraint nowhere{1000000, Vec3::UnitX(), 1};
   EXPECT_THROW(OrientationSolver::create(shape.hierarchy, {}, {&nowhere, 1}), Error);
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -93,6 +94,21 @@ TEST(UntieKnots, LeavesARegularGrid) {
   EXPECT_EQ(quads.mesh.faces.size(), std::size_t{cells} * cells);
   EXPECT_GT(after.jacobian_min, 0.9);
   made::expect_same_topology(after, before);
+}
+
+/// Pieces are smoothed on many threads at once.
+TEST(UntieKnots, PiecesDoNotTellOfProgress) {
+  const Mesh plate = sample_shape("plate");
+  Context context;
+  int told = 0;
+  context.on_progress = [&](std::string_view, double) { ++told; };
+  const VertexFaces around = vertex_faces(plate, context);
+  const Graph graph = vertex_graph(plate, around, {}, context);
+  Extraction quads = turned_grid(plate, 3, context);
+  told = 0;
+  untie_knots(quads, plate, around, graph, {}, 0, 1, context);
+  EXPECT_EQ(mesh_statistics(quads.mesh).irregular_vertices, 0u);
+  EXPECT_EQ(told, 0);
 }
 
 }  // namespace

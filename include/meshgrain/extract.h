@@ -15,7 +15,7 @@ struct ExtractOptions {
   PositionEnergy energy = PositionEnergy::extrinsic;
   /// The triangle mesh whose vertices are the graph's nodes, if there is one: its own edges are
   /// then collapsed, and the output has its components, borders and genus. Without it the paper's
-  /// way is taken, which needs nothing but the graph; the options below are for that.
+  /// way is taken, which needs nothing but the graph; the last two options are for that.
   const Mesh* surface = nullptr;
   /// Over a mesh: the lines of `surface` that become chains of edges, whatever the fields are; if
   /// there are none given, those of its border.

@@ -77,9 +77,9 @@ enum class Schedule {
 };
 
 struct SolverOptions {
-  /// Gauss-Seidel sweeps on each level. 0: the paper's six (section 3.5), but on each of the three
-  /// finest levels only one, or two below 30,000 nodes, as more change nothing there that could be
-  /// measured.
+  /// Gauss-Seidel sweeps on each level. 0: the paper's six (section 3.5), eight where blocks of
+  /// nodes are short; but on each of the three finest levels only one, or two below 30,000 nodes,
+  /// as more change nothing there that could be measured.
   int sweeps = 0;
   Schedule schedule = Schedule::blocks;
   bool multiresolution = true;  ///< false: sweeps on the finest level only (Figure 8).

@@ -44,10 +44,8 @@ std::span<const BorderLoops::Place> BorderLoops::places_of(Index vertex) const {
   return {found.begin(), found.end()};
 }
 
-std::vector<std::uint8_t> border_vertices(const Mesh& mesh, const Context& context) {
-  std::vector<std::uint8_t> result(mesh.positions.size(), 0);
-  for (const auto& [a, b] : rim_edges(mesh, context)) result[a] = result[b] = 1;
-  return result;
+std::vector<std::uint8_t> rim_vertices(const Mesh& mesh, const Context& context) {
+  return mark_ends(rim_edges(mesh, context), mesh.positions.size());
 }
 
 BorderLoops find_border_loops(const Mesh& surface, std::span<const std::uint8_t> locked,

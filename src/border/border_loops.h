@@ -31,7 +31,7 @@ struct BorderLoops {
 };
 
 /// The vertices on the border of a mesh, and on edges at which it is not manifold.
-std::vector<std::uint8_t> border_vertices(const Mesh& mesh, const Context& context);
+std::vector<std::uint8_t> rim_vertices(const Mesh& mesh, const Context& context);
 
 /// The borders of a surface, cut where it is not manifold, that have at least three vertices of
 /// those that are `locked` (a flag a vertex).

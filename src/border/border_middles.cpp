@@ -130,8 +130,7 @@ void join_locked(Extraction& extraction) {
   Mesh& mesh = extraction.mesh;
   std::vector<Index> into(mesh.positions.size());
   for (Index v = 0; v < into.size(); ++v) into[v] = v;
-  std::vector<std::uint8_t> on_border(mesh.positions.size(), 0);
-  for (const auto& [a, b] : border_edges(mesh)) on_border[a] = on_border[b] = 1;
+  const auto on_border = mark_ends(border_edges(mesh), mesh.positions.size());
   std::map<Index, Index> first;  // of each node
   bool any = false;
   for (const Index v : extraction.corners) {

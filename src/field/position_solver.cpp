@@ -87,7 +87,12 @@ std::unique_ptr<PositionSolver> PositionSolver::create(
     const Hierarchy& hierarchy, const OrientationField& orientation, const EdgeLength& edge_length,
     const PositionOptions& options, std::span<const PositionConstraint> constraints,
     const Context& context) {
-  if (options.posy % orientation.rosy != 0) {
+  const std::size_t nodes = hierarchy.levels[0].size();
+  if (orientation.directions.size() != nodes ||
+      (!edge_length.uniform() && edge_length.values.size() != nodes)) {
+    throw Error("positions need a direction, and one edge length or one for each, of every node");
+  }
+  if (orientation.rosy < 1 || options.posy % orientation.rosy != 0) {
     throw Error("a " + std::to_string(options.posy) + "-PoSy cannot follow a " +
                 std::to_string(orientation.rosy) +
                 "-RoSy: its symmetry must be a multiple of the orientation field's");

@@ -89,6 +89,7 @@ std::vector<float> lengths_by_bending(const Hierarchy& hierarchy, const Mesh& su
 /// Returns whether any of them has made a length shorter.
 bool shorten_around_lines(std::vector<float>& lengths, const Mesh& surface,
                           const FeatureLines& lines, double face_side) {
+  if (lines.empty()) return false;
   constexpr double shortest = 0.25;
   bool any = false;
   const auto shorten = [&](Index node, double longest) {
@@ -97,8 +98,7 @@ bool shorten_around_lines(std::vector<float>& lengths, const Mesh& surface,
     lengths[node] = length;
     any = true;
   };
-  std::vector<std::uint8_t> on_border(lengths.size(), 0);
-  for (const auto& [a, b] : border_edges(surface)) on_border[a] = on_border[b] = 1;
+  const auto on_border = mark_ends(border_edges(surface), surface.positions.size());
   // An edge as long as half the radius leaves a circle by what Chords tolerate. Borders are less
   // exact and often ragged: what turns within a face's side is no circle.
   for_each_turn(lines, face_side / 2, [&](Index node, double bend) {

@@ -90,10 +90,12 @@ void Chords::set_order(std::span<const Index> around) {
 
 void Chords::note_ways(const Context& context) {
   noted_.resize(line_.size());
+  noted_slides_.resize(line_.size());
   constexpr std::size_t grain = 1024;
   context.for_ranges(line_.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (auto v = static_cast<Index>(begin); v < end; ++v) {
-      if (line_[v] != no_index && rails_.slides(v)) noted_[v] = *way(v, line_[v], 0);
+      noted_slides_[v] = line_[v] != no_index && rails_.slides(v);
+      if (noted_slides_[v]) noted_[v] = *way(v, line_[v], 0);
     }
   });
 }
@@ -105,7 +107,8 @@ Chords::Ways Chords::ways_beside(Index v) const {
   for (const int k : {0, 1}) {
     const Index w = beside_[v][k];
     if (w == no_index) continue;
-    const bool slides = line_[w] == line && rails_.slides(w);
+    // As it was noted: vertices beside v move at the same time.
+    const bool slides = line_[w] == line && noted_slides_[w];
     if (!slides) {
       result[k] = way(w, line, from);
     } else if (goes_around_[v]) {

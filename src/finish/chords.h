@@ -83,8 +83,9 @@ class Chords {
   std::vector<double> ways_;  // of the lines' vertices
   std::vector<std::array<Index, 2>> beside_;
   std::vector<Index> line_;
-  std::vector<double> noted_;              // ways of vertices
-  std::vector<std::uint8_t> goes_around_;  // in order: `beside_` has the one behind first
+  std::vector<std::uint8_t> noted_slides_;  // of each vertex, see note_ways()
+  std::vector<double> noted_;               // ways of vertices
+  std::vector<std::uint8_t> goes_around_;   // in order: `beside_` has the one behind first
   // How many faces lead from a vertex on along its line: two beside creases, one beside borders.
   std::vector<std::uint8_t> faces_beside_;
   double edge_ = 0;  // the mean length

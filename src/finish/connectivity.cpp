@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "extract/drop_unused.h"
@@ -35,6 +36,39 @@ std::vector<CornerEdge> corner_edges(const Faces& faces) {
   return edges;
 }
 
+/// Lets line edges and corners follow vertices that faces have copies of now; those that no face
+/// has any more go. `source`: what each vertex is a copy of, or itself.
+void follow_copies(Extraction& extraction, const std::vector<Index>& source) {
+  using Ends = std::pair<Index, Index>;
+  const auto ordered = [](Index a, Index b) { return Ends(std::min(a, b), std::max(a, b)); };
+  std::multimap<Ends, LineEdge> lines;
+  for (const LineEdge& edge : extraction.line_edges) lines.emplace(ordered(edge.a, edge.b), edge);
+  extraction.line_edges.clear();
+  const Faces& faces = extraction.mesh.faces;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const auto face = faces[f];
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const Index a = face[k], b = face[(k + 1) % face.size()];
+      const auto [begin, end] = lines.equal_range(ordered(source[a], source[b]));
+      for (auto it = begin; it != end; ++it) {
+        const bool ahead = source[a] == it->second.a;
+        extraction.line_edges.push_back({ahead ? a : b, ahead ? b : a, it->second.line});
+      }
+    }
+  }
+  // Edges between two faces were met twice.
+  const auto key = [](const LineEdge& e) { return std::tuple(e.line, e.a, e.b); };
+  std::ranges::sort(extraction.line_edges, {}, key);
+  const auto twice = std::ranges::unique(extraction.line_edges, {}, key);
+  extraction.line_edges.erase(twice.begin(), twice.end());
+
+  std::vector<Index> corners = std::exchange(extraction.corners, {});
+  std::ranges::sort(corners);
+  for (Index v = 0; v < source.size(); ++v) {
+    if (std::ranges::binary_search(corners, source[v])) extraction.corners.push_back(v);
+  }
+}
+
 }  // namespace
 
 void split_into_quads(Extraction& extraction) {
@@ -55,6 +89,7 @@ void split_into_quads(Extraction& extraction) {
     const auto it = std::lower_bound(
         edges.begin(), edges.end(), std::pair(std::min(a, b), std::max(a, b)),
         [](const CornerEdge& e, const std::pair<Index, Index>& key) { return e.key() < key; });
+    if (it == edges.end() || it->key() != std::pair(std::min(a, b), std::max(a, b))) continue;
     halves.push_back({a, middle[it->corner], line});
     halves.push_back({middle[it->corner], b, line});
   }
@@ -139,6 +174,8 @@ std::size_t make_manifold(Extraction& extraction) {
   // One vertex a fan: faces around a vertex that share an edge there belong to the same.
   const std::size_t vertices = mesh.positions.size();
   const VertexFaces around = vertex_faces(mesh);
+  std::vector<Index> source(vertices);  // of copies: the vertex
+  std::iota(source.begin(), source.end(), Index{0});
   std::vector<Index> fan;
   for (Index v = 0; v < vertices; ++v) {
     const auto faces = around[v];
@@ -169,6 +206,7 @@ std::size_t make_manifold(Extraction& extraction) {
       if (it == copies.end()) {
         const Index self[1] = {v};
         copies.emplace_back(root, append_mean(extraction, self));
+        source.push_back(v);
         it = copies.end() - 1;
       }
       for (Index& corner : mesh.faces[faces[a]]) {
@@ -176,6 +214,7 @@ std::size_t make_manifold(Extraction& extraction) {
       }
     }
   }
+  if (dropped > 0 || source.size() > vertices) follow_copies(extraction, source);
   drop_unused(extraction);
   return dropped;
 }

@@ -252,8 +252,7 @@ class Mending {
   bool may_be_let_go(Index v) const {
     if (!options_.creases_stay) return true;
     if (on_border_.empty()) {
-      on_border_.assign(mesh_.positions.size(), 0);
-      for (const auto& [a, b] : border_edges(mesh_, context_)) on_border_[a] = on_border_[b] = 1;
+      on_border_ = mark_ends(border_edges(mesh_, context_), mesh_.positions.size());
     }
     return on_border_[v] != 0;
   }

@@ -257,7 +257,11 @@ void Smoother::iterate(int iterations, bool put_on) {
   std::vector<Vec3> next(mesh_.positions.size());
   float side = 0;
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    context_.progress("smoothing", static_cast<double>(iteration) / iterations);
+    context_.check();
+    // Parts of a mesh are smoothed on many threads at once, and that is not theirs to say.
+    if (!options_.is_part) {
+      context_.progress("smoothing", static_cast<double>(done_) / this->iterations());
+    }
     const auto [length, momentum] = step();
     ++done_;
     const bool look = iteration % between_looks == 0;

@@ -96,7 +96,10 @@ Mesh read_aln(const Input& input) {
     const std::string_view name = text.rest_of_line();
     const std::filesystem::path path =
         input.path().parent_path() / std::filesystem::path(std::u8string(name.begin(), name.end()));
-    if (!exists(path)) text.fail(at, fmt::format("the scan {} does not exist", in_quotes(name)));
+    std::error_code ignored;
+    if (!exists(path, ignored)) {
+      text.fail(at, fmt::format("the scan {} does not exist", in_quotes(name)));
+    }
     text.next_line();
     skip_flag(text);
     const Eigen::Affine3d transform = read_matrix(text, item);

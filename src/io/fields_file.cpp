@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -36,7 +37,8 @@ std::optional<double> number_in(const std::vector<std::string>& comments, std::s
     double value = 0;
     const auto end = comment.data() + comment.size();
     const auto [after, error] = fast_float::from_chars(comment.data() + at, end, value);
-    if (error != std::errc() || after != end || !std::isfinite(value)) {
+    constexpr double largest = std::numeric_limits<float>::max();
+    if (error != std::errc() || after != end || !(std::abs(value) <= largest)) {
       input.fail(fmt::format("the header's comment {} is not a number", io::in_quotes(comment)));
     }
     return value;

@@ -9,21 +9,25 @@
 
 namespace meshgrain::io {
 
-Output::Output(const std::filesystem::path& path)
-    : path_(path), temporary_(platform::temporary_beside(path)) {
+Output::Output(const std::filesystem::path& path) : path_(path), target_(path) {
   std::error_code ignored;
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (!is_directory(folder, ignored)) {
     fail(fmt::format("the folder \"{}\" does not exist", display_name(folder)));
   }
   if (is_directory(path, ignored)) fail("is a folder, not a file");
+  if (!platform::is_stream(path)) {
+    if (is_symlink(path, ignored)) target_ = weakly_canonical(path, ignored);
+    temporary_ = platform::temporary_beside(target_);
+  }
   errno = 0;
-  file_.open(temporary_, std::ios::binary | std::ios::trunc);
+  file_.open(temporary_.empty() ? target_ : temporary_, std::ios::binary | std::ios::trunc);
   if (!file_) fail_with_system_error();
 }
 
 Output::~Output() {
   file_.close();
+  if (temporary_.empty()) return;
   std::error_code ignored;
   std::filesystem::remove(temporary_, ignored);  // there is none any more after commit()
 }
@@ -40,8 +44,9 @@ void Output::commit() {
   flush();
   file_.close();
   if (!file_) fail_with_system_error();
+  if (temporary_.empty()) return;
   try {
-    platform::replace_file(temporary_, path_);
+    platform::replace_file(temporary_, target_);
   } catch (const std::filesystem::filesystem_error& error) {
     fail("cannot be written: " + error.code().message());
   }

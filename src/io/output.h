@@ -15,6 +15,8 @@
 namespace meshgrain::io {
 
 /// A file that is being written: it appears under its name on commit(), whole, and else not at all.
+/// Where the name is a link, what it leads to is replaced; devices and pipes are written to at
+/// once.
 class Output {
  public:
   /// Throws Error if the folder is missing or nothing can be created in it.
@@ -55,7 +57,8 @@ class Output {
   [[noreturn]] void fail_with_system_error() const;
 
   std::filesystem::path path_;
-  std::filesystem::path temporary_;
+  std::filesystem::path target_;     // where path_ leads to
+  std::filesystem::path temporary_;  // empty if the target is written to at once
   std::ofstream file_;
   fmt::memory_buffer buffer_;
 };

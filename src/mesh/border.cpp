@@ -99,6 +99,13 @@ using Edges = std::vector<Edge>;
 
 }  // namespace
 
+std::vector<std::uint8_t> mark_ends(std::span<const std::array<Index, 2>> edges,
+                                    std::size_t vertices) {
+  std::vector<std::uint8_t> result(vertices, 0);
+  for (const auto& [a, b] : edges) result[a] = result[b] = 1;
+  return result;
+}
+
 std::vector<std::array<Index, 2>> border_edges(const Mesh& mesh, const Context& context) {
   return select_edges<Edge>(
       mesh,

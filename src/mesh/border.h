@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "meshgrain/context.h"
@@ -17,6 +19,10 @@ std::vector<std::array<Index, 2>> border_edges(const Mesh& mesh,
 /// The edges that are not simply between two faces of opposite direction: the border, and where
 /// more than two faces or sides that disagree meet. Each once, the smaller index first.
 std::vector<std::array<Index, 2>> rim_edges(const Mesh& mesh, const Context& context = Context(1));
+
+/// Of each of so many vertices, whether one of the edges ends there.
+std::vector<std::uint8_t> mark_ends(std::span<const std::array<Index, 2>> edges,
+                                    std::size_t vertices);
 
 /// An edge between two faces of opposite direction, from the smaller index to the larger as `left`
 /// has it.

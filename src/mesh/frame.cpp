@@ -3,27 +3,12 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "util/sum.h"
+#include "util/bounding_box.h"
 
 namespace meshgrain {
 
 Frame unit_frame(const Mesh& mesh, const Context& context) {
-  struct Box : Eigen::AlignedBox3f {
-    Box operator+(const Box& o) const {
-      Box both = *this;
-      both.extend(o);
-      return both;
-    }
-  };
-  const Box single = sum_over_ranges(
-      mesh.positions.size(),
-      [&](std::size_t begin, std::size_t end) {
-        Box part;
-        for (std::size_t v = begin; v < end; ++v) part.extend(mesh.positions[v]);
-        return part;
-      },
-      context);
-  const Eigen::AlignedBox3d box = single.cast<double>();
+  const auto box = Eigen::AlignedBox3d(bounding_box(mesh.positions, context).cast<double>());
   Frame frame;
   frame.origin = mesh.origin;
   const double diagonal = mesh.positions.empty() ? 0 : box.diagonal().norm();

@@ -22,7 +22,7 @@ struct VertexFaces {
 
 /// The faces around each vertex; a face that repeats a vertex appears as often. Throws Error if the
 /// mesh has more corners than an index can count.
-VertexFaces vertex_faces(const Mesh& mesh, const Context& context = Context());
+VertexFaces vertex_faces(const Mesh& mesh, const Context& context = Context(1));
 
 /// Which of a face's corners is v; their number if none is.
 inline std::size_t corner_of(std::span<const Index> face, Index v) {

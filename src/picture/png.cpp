@@ -1,11 +1,10 @@
 #include <fmt/format.h>
 #include <png.h>
 
-#include <cerrno>
 #include <filesystem>
-#include <fstream>
-#include <system_error>
+#include <vector>
 
+#include "io/output.h"
 #include "meshgrain/error.h"
 #include "meshgrain/picture.h"
 
@@ -37,21 +36,9 @@ void write_png(const std::filesystem::path& path, const Image& image) {
       image.rgb.size() != 3 * std::size_t(image.width) * image.height)
     throw Error("the picture has no pixels, or not as many as its width and height say");
   const std::vector<char> bytes = encode(image);
-  // Beside its place first, so that a failure leaves no half a file and an old one stays whole.
-  std::filesystem::path beside = path;
-  beside += ".part";
-  std::ofstream out(beside, std::ios::binary);
-  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  out.close();
-  std::error_code problem;
-  if (!out)
-    problem = std::make_error_code(errno != 0 ? std::errc(errno) : std::errc::io_error);
-  else
-    std::filesystem::rename(beside, path, problem);
-  if (!problem) return;
-  std::error_code ignored;
-  std::filesystem::remove(beside, ignored);
-  throw Error(fmt::format("cannot write {}: {}", path.string(), problem.message()));
+  io::Output output(path);
+  output.write({bytes.data(), bytes.size()});
+  output.commit();
 }
 
 }  // namespace meshgrain

@@ -118,9 +118,7 @@ bool Pipeline::choose_lattice() {
   if (!any && !many_abreast({})) return false;  // nor are there without the borders
   const auto border = border_edges(surface_, context_);
   if (has_branches(border.size())) return false;
-  std::vector<std::uint8_t> on_border(surface_.positions.size(), 0);
-  for (const auto& [a, b] : border) on_border[a] = on_border[b] = 1;
-  if (!any && !many_abreast(on_border)) return false;
+  if (!any && !many_abreast(mark_ends(border, surface_.positions.size()))) return false;
   aim_at(OutputFaces::quad_dominant);
   return true;
 }

@@ -137,8 +137,7 @@ class Pipeline {
   bool make_faces_again();
   /// Makes the faces once more, after a change of what they are made from, and smooths them. Keeps
   /// what was before, and returns false, unless these are better.
-  bool try_again(const std::function<bool()>& is_better,
-                 const std::function<void()>& change = {});
+  bool try_again(const std::function<bool()>& is_better, const std::function<void()>& change = {});
 
   /// Returns false if they are not worth mending, and have not been.
   bool smooth_faces_if(const std::function<bool()>& is_worth_mending);

@@ -26,10 +26,14 @@ namespace {
 /// How far a count may be off after strips have gone or come, which are long: all that may be.
 constexpr double strip_tolerance = 0.0099;
 
+/// A number of faces; none if it is negative.
+std::size_t rounded_up(double faces) {
+  return static_cast<std::size_t>(std::ceil(std::max(0.0, faces)));
+}
+
 /// Pairs of neighbouring faces that both touch the border.
 std::vector<std::array<Index, 2>> border_of_faces(const Mesh& surface, const Graph& graph) {
-  std::vector<std::uint8_t> on_border(surface.positions.size(), 0);
-  for (const auto& [a, b] : border_edges(surface)) on_border[a] = on_border[b] = 1;
+  const auto on_border = mark_ends(border_edges(surface), surface.positions.size());
   const auto touches = [&](Index f) {
     const auto face = surface.faces[f];
     return on_border[face[0]] || on_border[face[1]] || on_border[face[2]];
@@ -118,7 +122,7 @@ bool Pipeline::add_faces(Extraction& extraction) {
   return change_quads(extraction, [&](Extraction& quads, double count, double wanted) {
     // A row more is much where faces are large for what they cover: another attempt is better.
     if (quads.mesh.faces.size() < few_faces) return false;
-    const auto least = static_cast<std::size_t>(std::ceil((1 - strip_tolerance) * wanted - count));
+    const std::size_t least = rounded_up((1 - strip_tolerance) * wanted - count);
     const auto most = static_cast<std::size_t>((1 + strip_tolerance) * wanted - count);
     return stage_("extraction", [&] { return add_strips(quads, least, most, context_) >= least; });
   });
@@ -138,7 +142,7 @@ void Pipeline::add_single_faces() {
 
 bool Pipeline::take_strips(Extraction& extraction, std::size_t most_single) {
   return change_quads(extraction, [&](Extraction& quads, double count, double wanted) {
-    const auto least = static_cast<std::size_t>(std::ceil(count - (1 + strip_tolerance) * wanted));
+    const std::size_t least = rounded_up(count - (1 + strip_tolerance) * wanted);
     const auto most = static_cast<std::size_t>(count - (1 - strip_tolerance) * wanted);
     const std::size_t gone = remove_strips(quads, least, most, context_);
     if (gone >= least) return true;

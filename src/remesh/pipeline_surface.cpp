@@ -78,7 +78,7 @@ void Pipeline::sharpen() {
     is_sharpened_ = take_out_noise(surface_, options_, side, result_.report.notes, context_);
     if (is_sharpened_) input_size_ = surface_size(surface_, context_);
   });
-  if (options_.lock_borders) locked_ = border_vertices(surface_, context_);
+  if (options_.lock_borders) locked_ = rim_vertices(surface_, context_);
 }
 
 void Pipeline::coarsen() {

@@ -158,6 +158,16 @@ void on_interrupt(void (*handler)(int signal)) {
   }
 }
 
+bool is_stream(const std::filesystem::path& path) {
+#ifdef MESHGRAIN_POSIX
+  // They may lead to a file that others write to, too, and that must not be replaced.
+  const std::string& name = path.native();
+  if (name == "/dev/stdout" || name == "/dev/stderr" || name.starts_with("/dev/fd/")) return true;
+#endif
+  std::error_code ignored;
+  return is_other(path, ignored);
+}
+
 // The standard demands what POSIX does: an existing file is replaced in one step.
 void replace_file(const std::filesystem::path& from, const std::filesystem::path& to) {
   std::filesystem::rename(from, to);

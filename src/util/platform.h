@@ -50,6 +50,10 @@ int terminal_width();
 /// signals.
 void on_interrupt(void (*handler)(int signal));
 
+/// Whether a path names no place for a file, but something that takes bytes as they come: a device,
+/// a pipe, or one of the streams of a process.
+bool is_stream(const std::filesystem::path& path);
+
 /// Renames `from` to `to` in one step that replaces an existing file. Both must lie in one file
 /// system. Throws std::filesystem::filesystem_error.
 void replace_file(const std::filesystem::path& from, const std::filesystem::path& to);
