@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "border/split_polygon.h"
+#include "mesh/tangent_angle.h"
 #include "util/sort_unique.h"
 
 namespace meshgrain {
@@ -17,14 +18,6 @@ using std::numbers::pi;
 
 constexpr double straight = 0.8 * pi;  // an angle of a face on the border, or more
 
-/// The angle at p from one neighbour counterclockwise to another: 0 to 2 pi.
-double angle(const Vec3& p, const Vec3& from, const Vec3& to, const Vec3& normal) {
-  const Vec3 a = from - p, b = to - p;
-  const double result =
-      std::atan2(normal.dot(a.cross(b)), a.dot(b) - normal.dot(a) * normal.dot(b));
-  return result < 0 ? result + 2 * pi : result;
-}
-
 }  // namespace
 
 /// Whether a face has a vertex of the border that it alone is at, and a straight angle there.
@@ -33,8 +26,8 @@ bool BorderFaces::is_straight(Index h) const {
   if (!mesh_.clusters.on_border[v] || mesh_.clusters.hold[v] != at_corner) return false;
   if (map_.valence(v) != 2) return false;
   const auto& p = mesh_.clusters.positions;
-  return angle(p[v], p[map_.target(h)], p[map_.origin(map_.prev(h))], mesh_.clusters.normals[v]) >
-         straight;
+  return tangent_angle(p[v], p[map_.target(h)], p[map_.origin(map_.prev(h))],
+                       mesh_.clusters.normals[v]) > straight;
 }
 
 bool BorderFaces::needs_split(const std::vector<Index>& orbit) const {
@@ -238,8 +231,8 @@ double BorderFaces::part_cost(const std::vector<Index>& orbit,
   if (kind_ == Kind::only_quads && n != 4) return std::numeric_limits<double>::infinity();
   double cost = kind_ == Kind::quads && n != 4 ? 0.5 : 0;
   for (std::size_t k = 0; k < n; ++k) {
-    const double a =
-        angle(positions[vertex(k)], positions[vertex(k + 1)], positions[vertex(k + n - 1)], normal);
+    const double a = tangent_angle(positions[vertex(k)], positions[vertex(k + 1)],
+                                   positions[vertex(k + n - 1)], normal);
     cost += (a - regular) * (a - regular);
     if (a > 1.1 * pi) cost += 20;
     if (a <= straight || !mesh_.clusters.on_border[vertex(k)]) continue;

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "mesh/tangent_angle.h"
+
 namespace meshgrain {
 
 using std::numbers::pi;
@@ -28,11 +30,8 @@ Index FaceRepair::add_edge(Index a, Index b) {
 
 /// The angle at v from one neighbour counterclockwise to another, in the tangent plane: 0 to 2 pi.
 double FaceRepair::angle(Index v, Index from, Index to) const {
-  const Vec3& n = clusters_.normals[v];
-  const Vec3 a = clusters_.positions[from] - clusters_.positions[v],
-             b = clusters_.positions[to] - clusters_.positions[v];
-  const double angle = std::atan2(n.dot(a.cross(b)), a.dot(b) - n.dot(a) * n.dot(b));
-  return angle < 0 ? angle + 2 * pi : angle;
+  const auto& p = clusters_.positions;
+  return tangent_angle(p[v], p[from], p[to], clusters_.normals[v]);
 }
 
 /// The inner angle of h's face at the origin of h.

@@ -19,6 +19,7 @@
 #include "meshgrain/finish.h"
 #include "meshgrain/hierarchy.h"
 #include "meshgrain/remesh.h"
+#include "remesh/flaws.h"
 #include "remesh/stages.h"
 #include "remesh/target.h"
 
@@ -157,25 +158,8 @@ class Pipeline {
   bool choose_lattice();
   /// The surface, for the lattice that was chosen.
   void refine_for_lattice();
-  /// What the faces are far from: limbs that were cut off, slits that were closed, edges of thin
-  /// parts that they keep inside of. None where that cannot be told.
-  struct LostSurface {
-    std::vector<Index> nodes;
-    double faces = 0;  // that would cover it
-    bool is_considerably_less_than(const LostSurface& other) const;
-  };
+  /// None where that cannot be told.
   LostSurface lost_surface() const;
-  // What is hardly to be seen, before and after the faces are mended, which loses some more.
-  static constexpr double little_lost_before = 5, little_lost = 8;
-  /// What other fields may do without.
-  struct Flaws {
-    double lost_faces = 0;  // if these are not little
-    float flatness = 0;     // of the flattest quad, if that is nearly flat
-    std::size_t faults = 0;
-    std::size_t all_faults = 0;  // with crossings where the surface crosses itself, too
-    bool any() const;
-    bool are_fewer_than(const Flaws& other) const;
-  };
   Flaws flaws(double lost_faces);
   /// Those of the faces that are farther than a face from where the surface passes through itself.
   std::size_t count_own(std::span<const std::array<Index, 2>> crossings);

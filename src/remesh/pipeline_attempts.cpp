@@ -24,7 +24,7 @@ std::size_t Pipeline::faults() const {
   return inverted_faces() + find_crossings(extraction_.mesh, context_).size();
 }
 
-Pipeline::LostSurface Pipeline::lost_surface() const {
+LostSurface Pipeline::lost_surface() const {
   if (is_cloud_ || !nodes_are_vertices_) return {};
   const float side = lattice_faces_ == OutputFaces::quads ? 0.5f : 1;  // of an edge of the lattice
   const VertexFaces around = vertex_faces(extraction_.mesh, context_);
@@ -35,10 +35,6 @@ Pipeline::LostSurface Pipeline::lost_surface() const {
   return lost;
 }
 
-bool Pipeline::LostSurface::is_considerably_less_than(const LostSurface& other) const {
-  return faces <= 0.7 * other.faces;
-}
-
 bool Pipeline::may_make_others() const {
   return options_.smoothing > 0 && has_few_faces() && !has_given_positions(options_);
 }
@@ -47,19 +43,13 @@ bool Pipeline::may_be_irregular() const {
   return regularity_ <= RemeshOptions().regularity;
 }
 
-Pipeline::Flaws Pipeline::flaws(double lost_faces) {
+Flaws Pipeline::flaws(double lost_faces) {
   constexpr float nearly_flat = 0.1f;  // beyond it a quad is as good as any
   const float flatness = std::max(0.0f, nearly_flat - least_jacobian(extraction_.mesh));
   const std::size_t inverted = flatness > 0 ? inverted_faces() : 0;
   const auto crossings = find_crossings(extraction_.mesh, context_);
-  return {lost_faces <= little_lost ? 0 : lost_faces, flatness, inverted + count_own(crossings),
-          inverted + crossings.size()};
-}
-
-bool Pipeline::Flaws::are_fewer_than(const Flaws& other) const {
-  return lost_faces <= other.lost_faces && flatness <= other.flatness && faults <= other.faults &&
-         all_faults <= other.all_faults &&
-         (lost_faces < other.lost_faces || flatness < other.flatness || faults < other.faults);
+  return {lost_faces <= LostSurface::little ? 0 : lost_faces, flatness,
+          inverted + count_own(crossings), inverted + crossings.size()};
 }
 
 std::size_t Pipeline::count_own(std::span<const std::array<Index, 2>> crossings) {
@@ -84,10 +74,6 @@ std::size_t Pipeline::count_own(std::span<const std::array<Index, 2>> crossings)
   }));
 }
 
-bool Pipeline::Flaws::any() const {
-  return lost_faces > 0 || flatness > 0 || faults > 0;
-}
-
 void Pipeline::smooth_faces() {
   constexpr int most_attempts = 3;
   if (!may_make_others() || !may_be_irregular()) {
@@ -103,7 +89,7 @@ void Pipeline::smooth_faces() {
     LostSurface lost;
     const auto is_little_lost = [&] {
       lost = lost_surface();
-      return lost.faces <= little_lost_before;
+      return lost.faces <= LostSurface::little_before;
     };
     if (smooth_faces_if(is_little_lost)) return;
     keep_singularities_around(lost.nodes);
@@ -122,7 +108,7 @@ void Pipeline::smooth_faces() {
 double Pipeline::recover_lost_surface() {
   const LostSurface lost = lost_surface();
   const bool was_tried = !keeps_singularities_.empty();  // before the faces were mended
-  if (lost.faces <= little_lost || !may_be_irregular() || was_tried) return lost.faces;
+  if (lost.faces <= LostSurface::little || !may_be_irregular() || was_tried) return lost.faces;
   keep_singularities_around(lost.nodes);
   const Flaws before = flaws(lost.faces);
   LostSurface now;

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "meshgrain/mesh.h"
+
+namespace meshgrain {
+
+/// What the faces are far from: limbs that were cut off, slits that were closed, edges of thin
+/// parts that they keep inside of.
+struct LostSurface {
+  std::vector<Index> nodes;
+  double faces = 0;  // that would cover it
+
+  // What is hardly to be seen, before and after the faces are mended, which loses some more.
+  static constexpr double little_before = 5, little = 8;
+
+  bool is_considerably_less_than(const LostSurface& other) const {
+    return faces <= 0.7 * other.faces;
+  }
+};
+
+/// What faces that are made otherwise may do without.
+struct Flaws {
+  double lost_faces = 0;  // if these are not little
+  float flatness = 0;     // of the flattest quad, if that is nearly flat
+  std::size_t faults = 0;
+  std::size_t all_faults = 0;  // with crossings where the surface crosses itself, too
+
+  bool any() const { return lost_faces > 0 || flatness > 0 || faults > 0; }
+
+  /// None of them is more, and one is less.
+  bool are_fewer_than(const Flaws& other) const {
+    return lost_faces <= other.lost_faces && flatness <= other.flatness && faults <= other.faults &&
+           all_faults <= other.all_faults &&
+           (lost_faces < other.lost_faces || flatness < other.flatness || faults < other.faults);
+  }
+};
+
+}  // namespace meshgrain
