@@ -164,6 +164,7 @@ bool Pipeline::mend_flaws() {
 }
 
 void Pipeline::try_other_starts(Flaws before) {
+  if (before.are_hopeless(extraction_.mesh.faces.size())) return;
   constexpr std::uint64_t most = 2;
   for (std::uint64_t start = 1; start <= most && before.any(); ++start) {
     const std::uint64_t kept = std::exchange(other_start_, start);
@@ -197,9 +198,8 @@ void Pipeline::try_coarser_lattice() {
 void Pipeline::try_less_regular() {
   const double moderate = RemeshOptions().regularity;
   if (is_cloud_ || options_.smoothing == 0 || regularity_ <= moderate) return;
-  constexpr std::size_t hopeless = 20;  // one in so many faces
   const std::size_t before = faults();
-  if (before == 0 || before > extraction_.mesh.faces.size() / hopeless) return;
+  if (before == 0 || before > extraction_.mesh.faces.size() / Flaws::hopeless) return;
   for (const double share : {0.5, 0.0}) {
     regularity_ = moderate + share * (options_.regularity - moderate);
     // Where the input passes through itself there are always some.
