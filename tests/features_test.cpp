@@ -3,14 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "features/fading_creases.h"
 #include "features/mechanical_creases.h"
+#include "finish/crossings.h"
 #include "kept_creases.h"
 #include "made_fields.h"
 #include "made_graph.h"
@@ -19,6 +23,7 @@
 #include "meshgrain/shapes.h"
 #include "meshgrain/statistics.h"
 #include "meshgrain/surface.h"
+#include "meshgrain/triangulate.h"
 #include "same_topology.h"
 
 namespace meshgrain {
@@ -280,6 +285,68 @@ TEST(Features, EdgesOfADenseCubeStayStraight) {
     EXPECT_EQ(kept.corners, 1);
     for (const Vec3& p : output.positions) EXPECT_NEAR(p.cwiseAbs().maxCoeff(), 0.5, 1e-4);
   }
+}
+
+/// The sides of voxels that are in a ball, where no others are beside them.
+Mesh voxel_ball(double radius) {
+  const int n = static_cast<int>(radius) + 2;
+  const auto is_in = [&](const std::array<int, 3>& p) {
+    double sum = 0;
+    for (const int x : p) sum += (x + 0.5) * (x + 0.5);
+    return sum < radius * radius;
+  };
+  Mesh mesh;
+  std::map<std::array<int, 3>, Index> vertices;
+  const auto vertex = [&](const std::array<int, 3>& p) {
+    const auto [it, is_new] = vertices.emplace(p, static_cast<Index>(mesh.positions.size()));
+    if (is_new) mesh.positions.push_back(Eigen::Vector3i(p[0], p[1], p[2]).cast<float>());
+    return it->second;
+  };
+  for (int k = 0; k < 8 * n * n * n; ++k) {
+    const std::array<int, 3> voxel{k % (2 * n) - n, k / (2 * n) % (2 * n) - n, k / (4 * n * n) - n};
+    if (!is_in(voxel)) continue;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (const int side : {0, 1}) {
+        std::array<int, 3> beside = voxel;
+        beside[axis] += 2 * side - 1;
+        if (is_in(beside)) continue;
+        std::array<Index, 4> face{};
+        constexpr int around[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+        for (std::size_t c = 0; c < 4; ++c) {
+          std::array<int, 3> p = voxel;
+          p[axis] += side;
+          p[(axis + 1) % 3] += around[c][0];
+          p[(axis + 2) % 3] += around[c][1];
+          face[side == 1 ? c : 3 - c] = vertex(p);
+        }
+        mesh.faces.push_back(face);
+      }
+    }
+  }
+  return mesh;
+}
+
+/// Faces larger than a step cannot have it as an edge.
+TEST(Features, StepsOfVoxelsYieldToSoundFaces) {
+  const Mesh ball = voxel_ball(11);
+  ASSERT_GT(features_of(triangulate(ball)).size(), 500u);
+  RemeshOptions options;
+  options.face_count = 300;
+  const RemeshResult result = remesh(ball, options);
+  const MeshStatistics s = mesh_statistics(result.mesh);
+  made::expect_same_topology(s, mesh_statistics(ball));
+  EXPECT_NEAR(static_cast<double>(s.faces), 300, 3);
+  EXPECT_LE(s.irregular_vertices, 16u);
+  EXPECT_EQ(s.inverted_quads, 0u);
+  EXPECT_TRUE(find_crossings(result.mesh, Context()).empty());
+  const auto says_so = [](const RemeshResult& of) {
+    return std::ranges::any_of(of.report.notes, [](const std::string& note) {
+      return note.starts_with("without creases");
+    });
+  };
+  EXPECT_TRUE(says_so(result));
+  options.features.creases = Creases::by_angle;  // those that are asked for stay
+  EXPECT_FALSE(says_so(remesh(ball, options)));
 }
 
 }  // namespace

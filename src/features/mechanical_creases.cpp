@@ -45,7 +45,10 @@ bool is_mechanical(const Mesh& mesh, const RimAndSharpEdges& edges, const Contex
   const double share = clean_share(sharp);
   if (share > clean) return true;
   // Of a sculpture with few large faces most edges may be sharp, but then they are no clean lines.
-  return clear > doubtful && std::max(share, clean_share(less_sharp)) > clean_enough;
+  // On a surface around voxels hardly any are, but for all of its small steps together.
+  constexpr double too_ragged = 0.05;
+  return clear > doubtful && share > too_ragged &&
+         std::max(share, clean_share(less_sharp)) > clean_enough;
 }
 
 /// Flags of those sharper than an angle at which it matters least.

@@ -308,6 +308,7 @@ void Pipeline::aim_at(OutputFaces lattice_faces) {
 void Pipeline::change_target(const RemeshOptions& options) {
   wanted_ = options;
   aim_at(options.faces);
+  leaves_out_creases_ = false;
   find_lines();
   choose_lattice();
   size_faces();

@@ -169,6 +169,9 @@ class Pipeline {
   /// Makes the faces once more, so, if they have lost something when all is done. Returns how many
   /// are lost in the end.
   double recover_lost_surface();
+  /// What there is without creases that nobody asked for, where faces could not follow them: the
+  /// steps of a surface around voxels, or parts that are thinner than a face.
+  void try_without_creases();
   /// Until none are left of the flaws that there were `before`.
   void try_other_starts(Flaws before);
   /// Irregular vertices may be the price: not for those who want fewer of them than by default.
@@ -250,6 +253,7 @@ class Pipeline {
   EdgeLength free_lengths_;            // what lengths_ would be without these borders
   GuideLines guides_;                  // that edges follow
   std::vector<GuideRun> soft_guides_;  // that fields are drawn to
+  bool leaves_out_creases_ = false;
   FeatureLines features_;
   FeatureConstraints constraints_;
   std::vector<std::uint8_t> keeps_singularities_;  // the lattice; see ExtractOptions

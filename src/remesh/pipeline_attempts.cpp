@@ -140,8 +140,44 @@ void Pipeline::keep_singularities_around(const std::vector<Index>& nodes) {
   }
 }
 
+void Pipeline::try_without_creases() {
+  const bool has_marks = is_coarsened_ ? had_marks_ : !surface_.marked_edges.empty();
+  const bool may_go = options_.features.creases == Creases::automatic && !has_marks;
+  if (!may_go || leaves_out_creases_ || is_cloud_ || !nodes_are_vertices_) return;
+  const Flaws before = flaws(0);
+  // Where there is more than one a face, nothing helps.
+  const std::size_t faces = extraction_.mesh.faces.size();
+  if (!before.are_hopeless(faces) || before.faults > faces) return;
+  const auto on_rim = rim_vertices(surface_, context_);
+  const auto is_inside = [&](Index v) { return on_rim[v] == 0; };
+  if (std::ranges::none_of(features_.vertices, is_inside)) return;
+  FeatureLines lines = features_;
+  FeatureConstraints constraints = constraints_;
+  OrientationField orientation = fields().orientation;
+  auto energies = result_.report.orientation_energies;
+  const auto leave_out = [&] {
+    leaves_out_creases_ = true;
+    keeps_singularities_.clear();
+    aim_at(options_.faces);
+    find_lines();
+    complete_levels();
+    orient();
+  };
+  if (try_again([&] { return flaws(0).faults < before.faults / 2; }, leave_out)) {
+    result_.report.notes.emplace_back(
+        "without creases: faces of this size that follow them would pass through each other");
+    return;
+  }
+  leaves_out_creases_ = false;
+  features_ = std::move(lines);
+  constraints_ = std::move(constraints);
+  fields().orientation = std::move(orientation);
+  result_.report.orientation_energies = std::move(energies);
+}
+
 bool Pipeline::mend_flaws() {
   if (!may_make_others()) return false;
+  try_without_creases();
   const Flaws left = flaws(recover_lost_surface());
   // A finer lattice costs half as many irregular vertices again.
   const bool is_coarse = lattice_faces_ == OutputFaces::quads;

@@ -105,6 +105,10 @@ void Pipeline::coarsen() {
 
 FeatureOptions Pipeline::feature_options() const {
   FeatureOptions options = options_.features;
+  if (leaves_out_creases_) {
+    options.creases = Creases::none;
+    return options;
+  }
   if (is_sharpened_ || (is_coarsened_ && options.creases != Creases::none)) {
     options.creases = Creases::marked;
   }
