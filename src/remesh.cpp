@@ -53,10 +53,7 @@ void check(const RemeshOptions& options) {
   if (!(options.min_component >= 0) || !std::isfinite(options.min_component)) {
     throw Error("the least number of faces of a piece must not be negative");
   }
-  const Sizing::Kind sizing = options.sizing.kind;
-  if (options.graph.nodes == GraphNodes::faces &&
-      (sizing == Sizing::Kind::values || sizing == Sizing::Kind::density ||
-       sizing == Sizing::Kind::paint)) {
+  if (options.graph.nodes == GraphNodes::faces && options.sizing.is_by_value()) {
     throw Error("sizes by value are those of the input's vertices, not of its faces");
   }
   if (!(options.sizing.grading > 1)) throw Error("the grading of sizes must be larger than 1");

@@ -1043,6 +1043,17 @@ TEST_F(Io, AWriteGoesWhereALinkLeads) {
   EXPECT_EQ(files(), 2u);
 }
 
+TEST_F(Io, LinksThatLeadInCirclesAreRefused) {
+  const fs::path link = folder_ / "circle.obj";
+  std::error_code error;
+  fs::create_symlink(link, link, error);
+  if (error) GTEST_SKIP() << "links cannot be made here";
+  EXPECT_THROW(check_writable(link), Error);
+  EXPECT_TRUE(
+      error_of_writing("circle.obj", sample()).starts_with("circle.obj: cannot be written"));
+  EXPECT_EQ(files(), 1u);
+}
+
 TEST_F(Io, DevicesAreWrittenToAndStay) {
   const fs::path device = "/dev/null";
   if (!fs::is_character_file(device)) GTEST_SKIP() << "there is no such device here";

@@ -27,6 +27,8 @@ struct Sizing {
   /// Lengths grow at most by this factor over three faces.
   double grading = 2;
 
+  /// Whether the mesh's values are read.
+  bool is_by_value() const { return kind != Kind::uniform && kind != Kind::distance; }
   bool is_uniform() const { return kind == Kind::uniform && adaptive == 0; }
 };
 

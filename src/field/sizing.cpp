@@ -154,7 +154,7 @@ EdgeLength relative_edge_lengths(const Hierarchy& hierarchy, const Mesh& surface
   }
   if (sizing.kind == Sizing::Kind::distance) {
     multiply_by_distance(lengths, graph, sizing);
-  } else if (sizing.kind != Sizing::Kind::uniform) {
+  } else if (sizing.is_by_value()) {
     multiply_by_values(lengths, surface.values, sizing);
   }
   const bool is_shortened = shorten_around_lines(lengths, surface, creases, face_side);

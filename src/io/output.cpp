@@ -17,7 +17,11 @@ Output::Output(const std::filesystem::path& path) : path_(path), target_(path) {
   }
   if (is_directory(path, ignored)) fail("is a folder, not a file");
   if (!platform::is_stream(path)) {
-    if (is_symlink(path, ignored)) target_ = weakly_canonical(path, ignored);
+    if (is_symlink(path, ignored)) {
+      std::error_code problem;
+      target_ = weakly_canonical(path, problem);
+      if (problem) fail("cannot be written: " + problem.message());
+    }
     temporary_ = platform::temporary_beside(target_);
   }
   errno = 0;

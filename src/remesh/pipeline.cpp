@@ -306,15 +306,16 @@ void Pipeline::aim_at(OutputFaces lattice_faces) {
 }
 
 void Pipeline::change_target(const RemeshOptions& options) {
+  const bool left_out_creases = std::exchange(leaves_out_creases_, false);
+  const bool started_elsewhere = std::exchange(other_start_, 0) != 0;
   wanted_ = options;
   aim_at(options.faces);
-  leaves_out_creases_ = false;
   find_lines();
   choose_lattice();
   size_faces();
   keeps_singularities_.clear();
   crossings_of_surface_.reset();  // what is near to them depends on the size of a face
-  if (std::exchange(other_start_, 0) == 0) return;
+  if (!left_out_creases && !started_elsewhere) return;
   complete_levels();
   orient();
 }

@@ -124,8 +124,14 @@ class Pipeline {
   struct Attempt {
     Extraction extraction;
     bool is_split;
-    PositionField positions;
-    std::vector<EnergyRecord> energies;
+    PositionField position;
+    std::vector<EnergyRecord> position_energies;
+    OrientationField orientation;
+    std::vector<EnergyRecord> orientation_energies;
+    std::uint64_t other_start;
+    bool leaves_out_creases;
+    FeatureLines features;
+    FeatureConstraints constraints;
     OutputFaces lattice_faces;
     Target target;
     EdgeLength lengths;
@@ -166,12 +172,13 @@ class Pipeline {
   /// Limbs become thinner than they are, and are lost, where the rows around them are as many as
   /// at their ends: a lattice that has all its singularities there lets rows end.
   void keep_singularities_around(const std::vector<Index>& nodes);
-  /// Makes the faces once more, so, if they have lost something when all is done. Returns how many
-  /// are lost in the end.
-  double recover_lost_surface();
+  /// Makes the faces once more, so, if they have `lost` something when all is done. `left`: their
+  /// flaws, before and after.
+  void recover_lost_surface(const LostSurface& lost, Flaws& left);
   /// What there is without creases that nobody asked for, where faces could not follow them: the
-  /// steps of a surface around voxels, or parts that are thinner than a face.
-  void try_without_creases();
+  /// steps of a surface around voxels, or parts that are thinner than a face. Returns whether that
+  /// is better.
+  bool try_without_creases(const Flaws& before);
   /// Until none are left of the flaws that there were `before`.
   void try_other_starts(Flaws before);
   /// Irregular vertices may be the price: not for those who want fewer of them than by default.

@@ -105,20 +105,18 @@ void Pipeline::smooth_faces() {
   smooth_faces_if({});
 }
 
-double Pipeline::recover_lost_surface() {
-  const LostSurface lost = lost_surface();
+void Pipeline::recover_lost_surface(const LostSurface& lost, Flaws& left) {
   const bool was_tried = !keeps_singularities_.empty();  // before the faces were mended
-  if (lost.faces <= LostSurface::little || !may_be_irregular() || was_tried) return lost.faces;
+  if (lost.faces <= LostSurface::little || !may_be_irregular() || was_tried) return;
   keep_singularities_around(lost.nodes);
-  const Flaws before = flaws(lost.faces);
-  LostSurface now;
-  const bool is_better = try_again([&] {
-    now = lost_surface();
-    if (!now.is_considerably_less_than(lost)) return false;
-    const Flaws after = flaws(now.faces);
-    return after.flatness <= before.flatness && after.faults <= before.faults;
-  });
-  return is_better ? now.faces : lost.faces;
+  Flaws now;
+  const auto is_better = [&] {
+    const LostSurface still_lost = lost_surface();
+    if (!still_lost.is_considerably_less_than(lost)) return false;
+    now = flaws(still_lost.faces);
+    return now.flatness <= left.flatness && now.faults <= left.faults;
+  };
+  if (try_again(is_better)) left = now;
 }
 
 void Pipeline::keep_singularities_around(const std::vector<Index>& nodes) {
@@ -140,21 +138,17 @@ void Pipeline::keep_singularities_around(const std::vector<Index>& nodes) {
   }
 }
 
-void Pipeline::try_without_creases() {
-  const bool has_marks = is_coarsened_ ? had_marks_ : !surface_.marked_edges.empty();
-  const bool may_go = options_.features.creases == Creases::automatic && !has_marks;
-  if (!may_go || leaves_out_creases_ || is_cloud_ || !nodes_are_vertices_) return;
-  const Flaws before = flaws(0);
+bool Pipeline::try_without_creases(const Flaws& before) {
   // Where there is more than one a face, nothing helps.
   const std::size_t faces = extraction_.mesh.faces.size();
-  if (!before.are_hopeless(faces) || before.faults > faces) return;
+  if (!before.are_hopeless(faces) || before.faults > faces) return false;
+  const bool has_marks = is_coarsened_ ? had_marks_ : !surface_.marked_edges.empty();
+  const bool may_go = options_.features.creases == Creases::automatic && !has_marks;
+  if (!may_go || leaves_out_creases_ || is_cloud_ || !nodes_are_vertices_) return false;
   const auto on_rim = rim_vertices(surface_, context_);
   const auto is_inside = [&](Index v) { return on_rim[v] == 0; };
-  if (std::ranges::none_of(features_.vertices, is_inside)) return;
-  FeatureLines lines = features_;
-  FeatureConstraints constraints = constraints_;
-  OrientationField orientation = fields().orientation;
-  auto energies = result_.report.orientation_energies;
+  if (std::ranges::none_of(features_.vertices, is_inside)) return false;
+  const auto is_better = [&] { return flaws(0).faults < before.faults / 2; };
   const auto leave_out = [&] {
     leaves_out_creases_ = true;
     keeps_singularities_.clear();
@@ -163,22 +157,21 @@ void Pipeline::try_without_creases() {
     complete_levels();
     orient();
   };
-  if (try_again([&] { return flaws(0).faults < before.faults / 2; }, leave_out)) {
-    result_.report.notes.emplace_back(
-        "without creases: faces of this size that follow them would pass through each other");
-    return;
-  }
-  leaves_out_creases_ = false;
-  features_ = std::move(lines);
-  constraints_ = std::move(constraints);
-  fields().orientation = std::move(orientation);
-  result_.report.orientation_energies = std::move(energies);
+  if (!try_again(is_better, leave_out)) return false;
+  result_.report.notes.emplace_back(
+      "without creases: faces of this size that follow them would pass through each other");
+  return true;
 }
 
 bool Pipeline::mend_flaws() {
   if (!may_make_others()) return false;
-  try_without_creases();
-  const Flaws left = flaws(recover_lost_surface());
+  LostSurface lost = lost_surface();
+  Flaws left = flaws(lost.faces);
+  if (try_without_creases(left)) {
+    lost = lost_surface();
+    left = flaws(lost.faces);
+  }
+  recover_lost_surface(lost, left);
   // A finer lattice costs half as many irregular vertices again.
   const bool is_coarse = lattice_faces_ == OutputFaces::quads;
   const bool has_lost = !keeps_singularities_.empty();  // or had
@@ -203,23 +196,17 @@ void Pipeline::try_other_starts(Flaws before) {
   if (before.are_hopeless(extraction_.mesh.faces.size())) return;
   constexpr std::uint64_t most = 2;
   for (std::uint64_t start = 1; start <= most && before.any(); ++start) {
-    const std::uint64_t kept = std::exchange(other_start_, start);
-    OrientationField orientation = fields().orientation;
-    auto energies = result_.report.orientation_energies;
-    complete_levels();
-    orient();
     Flaws now;
     const auto is_better = [&] {
       now = flaws(lost_surface().faces);
       return now.are_fewer_than(before);
     };
-    if (try_again(is_better)) {
-      before = now;
-    } else {
-      other_start_ = kept;
-      fields().orientation = std::move(orientation);
-      result_.report.orientation_energies = std::move(energies);
-    }
+    const auto start_there = [&] {
+      other_start_ = start;
+      complete_levels();
+      orient();
+    };
+    if (try_again(is_better, start_there)) before = now;
   }
 }
 
@@ -268,10 +255,17 @@ bool Pipeline::try_again(const std::function<bool()>& is_better,
 }
 
 Pipeline::Attempt Pipeline::take_attempt() {
+  RemeshReport& report = result_.report;
   return {std::exchange(extraction_, {}),
           std::exchange(is_split_, false),
           std::exchange(fields().position, {}),
-          std::exchange(result_.report.position_energies, {}),
+          std::exchange(report.position_energies, {}),
+          fields().orientation,
+          report.orientation_energies,
+          other_start_,
+          leaves_out_creases_,
+          features_,
+          constraints_,
           lattice_faces_,
           target_,
           lengths_,
@@ -281,8 +275,14 @@ Pipeline::Attempt Pipeline::take_attempt() {
 void Pipeline::put_back(Attempt&& attempt) {
   extraction_ = std::move(attempt.extraction);
   is_split_ = attempt.is_split;
-  fields().position = std::move(attempt.positions);
-  result_.report.position_energies = std::move(attempt.energies);
+  fields().position = std::move(attempt.position);
+  result_.report.position_energies = std::move(attempt.position_energies);
+  fields().orientation = std::move(attempt.orientation);
+  result_.report.orientation_energies = std::move(attempt.orientation_energies);
+  other_start_ = attempt.other_start;
+  leaves_out_creases_ = attempt.leaves_out_creases;
+  features_ = std::move(attempt.features);
+  constraints_ = std::move(attempt.constraints);
   lattice_faces_ = attempt.lattice_faces;
   target_ = attempt.target;
   lengths_ = std::move(attempt.lengths);
