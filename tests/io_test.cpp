@@ -820,8 +820,10 @@ TEST_F(Io, PtsWithAndWithoutCount) {
 }
 
 std::string scan(const char* normals, const char* rows) {
-  return "ply\nformat ascii 1.0\nelement vertex 3\n"s + ply_points + normals +
-         "element face 1\nproperty list uchar int vertex_indices\nend_header\n" + rows;
+  return fmt::format(
+      "ply\nformat ascii 1.0\nelement vertex 3\n{}{}"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n{}",
+      ply_points, normals, rows);
 }
 
 TEST_F(Io, AlnPutsScansTogether) {
