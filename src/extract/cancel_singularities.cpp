@@ -1,6 +1,7 @@
 #include "extract/cancel_singularities.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <queue>
@@ -161,12 +162,13 @@ class Cancelling {
 };
 
 /// Triangles that follow each other lie together. A step costs about one, so that a piece is some
-/// times as wide as waves come far, and few reach its border.
+/// times as wide as waves come far, and few reach its border. There are 1, 2, 4 or so on, to be
+/// joined two by two.
 std::vector<UnitWaves::Piece> cut(std::size_t triangles, double radius, std::size_t at_once) {
-  constexpr double widths = 4;
+  constexpr double widths = 3;
   const double least = std::max(static_cast<double>(at_once), std::pow(widths * radius, 2));
-  const auto count =
-      static_cast<std::size_t>(std::max(1.0, static_cast<double>(triangles) / least));
+  const auto count = std::bit_ceil(
+      static_cast<std::size_t>(std::max(1.0, static_cast<double>(triangles) / least)));
   const auto begin = [&](std::size_t k) {
     return static_cast<std::uint32_t>(triangles * k / count);
   };
@@ -175,14 +177,12 @@ std::vector<UnitWaves::Piece> cut(std::size_t triangles, double radius, std::siz
   return pieces;
 }
 
-/// Some pieces each as one. To join all at once would leave the ways over their borders to a single
+/// Two pieces each as one. To join all at once would leave the ways over their borders to a single
 /// thread.
 std::vector<UnitWaves> joined(std::vector<UnitWaves>&& pieces, const Context& context) {
-  constexpr std::size_t group = 4;
   std::vector<UnitWaves> result;
-  for (std::size_t begin = 0; begin < pieces.size(); begin += group) {
-    const std::size_t end = std::min(pieces.size(), begin + group);
-    result.emplace_back(std::span(pieces).subspan(begin, end - begin), context);
+  for (std::size_t k = 0; k < pieces.size(); k += 2) {
+    result.emplace_back(std::span(pieces).subspan(k, 2), context);
   }
   return result;
 }

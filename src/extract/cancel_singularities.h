@@ -22,6 +22,6 @@ struct CancellingCost {
 /// A large mesh is cut into pieces of at least `at_once` triangles, so many that they fit into the
 /// caches: several are done at a time, then some of them together, and so on.
 void cancel_position_singularities(LatticeMesh& lattice, const CancellingCost& most,
-                                   const Context& context, std::size_t at_once = 1 << 14);
+                                   const Context& context, std::size_t at_once = 1 << 13);
 
 }  // namespace meshgrain
