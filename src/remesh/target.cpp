@@ -147,6 +147,12 @@ std::size_t Target::missing_quads(const Mesh& mesh) const {
       std::max(0.0, std::ceil(missing * (faces_ > 0 ? faces_ : vertices_))));
 }
 
+double Target::finished_ratio(const Mesh& mesh) const {
+  if (faces_ > 0) return static_cast<double>(mesh.faces.size()) / faces_;
+  if (vertices_ > 0) return static_cast<double>(mesh.positions.size()) / vertices_;
+  return 1;
+}
+
 std::size_t Target::spare_faces(const Mesh& mesh) const {
   // A vertex goes with each of them.
   const auto count = static_cast<double>(faces_ > 0 ? mesh.faces.size() : mesh.positions.size());

@@ -62,6 +62,8 @@ class Target {
   /// How many faces or vertices a mesh has for one that was asked for; 1 if it went by length. For
   /// pure quads the mesh is the one before it is split.
   double count_ratio(const Mesh& mesh) const;
+  /// The same of a finished mesh.
+  double finished_ratio(const Mesh& mesh) const;
 
   /// Whether a count was asked for: not by length, and not by default.
   bool must_be_met() const { return is_asked_for_ && cells_ > 0; }
