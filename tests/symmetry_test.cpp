@@ -16,6 +16,7 @@
 #include "meshgrain/surface.h"
 #include "meshgrain/triangulate.h"
 #include "same_topology.h"
+#include "util/bounding_box.h"
 
 namespace meshgrain {
 namespace {
@@ -256,6 +257,39 @@ TEST(Symmetry, TellsWhatWasMended) {
   notes.pop_back();
   EXPECT_EQ(notes, plain);
   EXPECT_FALSE(plain.empty());
+}
+
+/// As a whole it is nearly symmetric, but a half has no horn, or the result would have two.
+TEST(Symmetry, AHornOnOneSideIsNotLost) {
+  Mesh mesh = symmetric_blob(0);
+  constexpr float width = 0.15f, length = 0.5f;
+  float tip = 0;
+  for (Vec3& p : mesh.positions) {
+    const float across = std::hypot(p.y(), p.z()) / width;
+    if (p.x() > 0 && across < 1) p.x() += length * (1 - across * across);
+    tip = std::max(tip, p.x());
+  }
+  const MirrorPlane plane = find_mirror_plane(mesh, 0);
+  EXPECT_LT(plane.mismatch, 0.01);
+  EXPECT_GT(plane.unlike, 0.001);
+  RemeshOptions options;
+  options.face_count = 1000;
+  const auto range_of = [](const RemeshResult& result) {
+    const auto box = bounding_box(result.mesh.positions, Context());
+    const double x = result.mesh.origin.x();
+    return std::pair(box.min().x() + x, box.max().x() + x);
+  };
+  options.symmetry.automatic = true;
+  const RemeshResult whole = remesh(mesh, options);
+  EXPECT_EQ(whole.report.notes.back(), "not symmetric across x, y or z");
+  EXPECT_NEAR(range_of(whole).second, tip, 0.25 * length);
+  EXPECT_GT(range_of(whole).first, -tip + 0.5 * length);
+  options.symmetry = {.axes = {true, false, false}};
+  const RemeshResult doubled = remesh(mesh, options);
+  EXPECT_LT(range_of(doubled).first, -tip + 0.5 * length);
+  EXPECT_TRUE(std::ranges::any_of(doubled.report.notes, [](const std::string& note) {
+    return note.find("nothing like it across x") != std::string::npos;
+  }));
 }
 
 TEST(Symmetry, NeedsASurface) {

@@ -21,6 +21,7 @@ struct MirrorPlane {
   int axis = 0;
   double offset = 0;    ///< Along the axis, relative to Mesh::origin.
   double mismatch = 0;  ///< Mean distance of the surface to its mirror image, over its diagonal.
+  double unlike = 0;    ///< The share of the surface that is farther from it than 0.02 of that.
 };
 
 /// The plane across an axis about which a mesh is most nearly symmetric, among those through the

@@ -1,5 +1,6 @@
 #include "symmetry/plane_search.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <vector>
@@ -32,38 +33,41 @@ PlaneSearch::PlaneSearch(const Mesh& mesh, const Context& context)
       samples_(mesh, sample_count),
       tree_(mesh) {}
 
-/// The mean distance of the mirror image to the mesh, over its diagonal.
-double PlaneSearch::mismatch(int axis, double offset, const Context& context) const {
-  // Where it is large a few samples tell.
+/// How far the mirror image about a plane is from the mesh.
+MirrorPlane PlaneSearch::measure(int axis, double offset, const Context& context) const {
+  // Where it is far a few samples tell.
   constexpr std::size_t few = 8;
-  constexpr double large = 0.02;
-  const double rough = mismatch(axis, offset, few, context);
-  return rough > large ? rough : mismatch(axis, offset, 1, context);
+  constexpr double far = 0.02;
+  const MirrorPlane rough = measure(axis, offset, few, context);
+  return rough.mismatch > far ? rough : measure(axis, offset, 1, context);
 }
 
 /// By every so manieth sample.
-double PlaneSearch::mismatch(int axis, double offset, std::size_t step,
-                             const Context& context) const {
+MirrorPlane PlaneSearch::measure(int axis, double offset, std::size_t step,
+                                 const Context& context) const {
   constexpr std::size_t grain = 256;
+  constexpr double far = 0.02;
+  const double diagonal = box_.diagonal().cast<double>().norm();
   const std::size_t count = (samples_.size() + step - 1) / step;
-  std::vector<double> distances(count);
+  std::vector<double> distances(count);  // over the diagonal
   context.for_ranges(count, grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       Eigen::Vector3d p = samples_[k * step];
       p[axis] = 2 * offset - p[axis];
-      distances[k] = std::sqrt(tree_.closest(p).squared_distance);
+      distances[k] = std::sqrt(tree_.closest(p).squared_distance) / diagonal;
     }
   });
   const double sum = std::accumulate(distances.begin(), distances.end(), 0.0);
-  return sum / static_cast<double>(count) / box_.diagonal().cast<double>().norm();
+  const auto unlike = std::ranges::count_if(distances, [](double d) { return d > far; });
+  const auto all = static_cast<double>(count);
+  return {axis, offset, sum / all, static_cast<double>(unlike) / all};
 }
 
 MirrorPlane PlaneSearch::find(int axis, const Context& context) const {
-  MirrorPlane best{axis, (double{box_.min()[axis]} + box_.max()[axis]) / 2, 0};
-  best.mismatch = mismatch(axis, best.offset, context);
-  const double center = center_of_area(mesh_, axis);
-  const double other = mismatch(axis, center, context);
-  return other < best.mismatch ? MirrorPlane{axis, center, other} : best;
+  const MirrorPlane middle =
+      measure(axis, (double{box_.min()[axis]} + box_.max()[axis]) / 2, context);
+  const MirrorPlane center = measure(axis, center_of_area(mesh_, axis), context);
+  return center.mismatch < middle.mismatch ? center : middle;
 }
 
 MirrorPlane find_mirror_plane(const Mesh& mesh, int axis, const Context& context) {

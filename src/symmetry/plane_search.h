@@ -16,8 +16,8 @@ class PlaneSearch {
   MirrorPlane find(int axis, const Context& context) const;
 
  private:
-  double mismatch(int axis, double offset, const Context& context) const;
-  double mismatch(int axis, double offset, std::size_t step, const Context& context) const;
+  MirrorPlane measure(int axis, double offset, const Context& context) const;
+  MirrorPlane measure(int axis, double offset, std::size_t step, const Context& context) const;
 
   const Mesh& mesh_;
   Eigen::AlignedBox3f box_;

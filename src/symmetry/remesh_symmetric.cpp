@@ -1,5 +1,7 @@
 #include "symmetry/remesh_symmetric.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -24,16 +26,24 @@ namespace {
 std::vector<MirrorPlane> find_symmetry(const Mesh& input, const Symmetry& symmetry,
                                        std::vector<std::string>& notes, const Context& context) {
   constexpr double tolerance = 0.01;  // of the diagonal, for the mean distance to the mirror image
+  constexpr double most_unlike = 0.001;  // so small a fin is hardly to be seen
   const PlaneSearch search(input, context);
   std::vector<MirrorPlane> planes;
   for (int axis = 0; axis < 3; ++axis) {
     if (!symmetry.automatic && !symmetry.axes[axis]) continue;
     const MirrorPlane plane = search.find(axis, context);
     if (count_faces_in(input, plane) == input.faces.size()) continue;  // its own mirror image
-    if (plane.mismatch <= tolerance) {
-      planes.push_back(plane);
-    } else if (symmetry.axes[axis]) {
-      notes.emplace_back("not symmetric across ").push_back("xyz"[axis]);
+    const bool is_like = plane.mismatch <= tolerance;
+    const bool is_whole = plane.unlike <= most_unlike;
+    // Whoever asks for a plane may well want one of two halves that differ.
+    if (is_like && (is_whole || !symmetry.automatic)) planes.push_back(plane);
+    if (symmetry.automatic) continue;
+    if (!is_like) {
+      notes.push_back(fmt::format("not symmetric across {}", "xyz"[axis]));
+    } else if (!is_whole) {
+      notes.push_back(fmt::format(
+          "{:.1f} % of the input has nothing like it across {}, and is lost or on both sides now",
+          100 * plane.unlike, "xyz"[axis]));
     }
   }
   if (!symmetry.automatic) return planes;
