@@ -214,6 +214,24 @@ TEST(CloudGraph, HasTheNearestNeighboursFromBothEnds) {
   }
 }
 
+/// As placeholders are. Those beside them tell which way they look, here inwards.
+TEST(CloudGraph, NormalsWithoutDirectionAreEstimated) {
+  const made::Sample sample = made::sphere(1500, 1);
+  Mesh cloud;
+  cloud.positions = sample.points;
+  for (const Vec3& n : sample.normals) cloud.normals.push_back(-n);
+  for (Index i = 0; i < cloud.normals.size(); i += 3) cloud.normals[i].setZero();
+  cloud.normals[1].setConstant(std::numeric_limits<float>::quiet_NaN());
+  const Graph graph = build_graph(cloud);
+  for (Index i = 0; i < graph.size(); ++i) {
+    EXPECT_LT(graph.normals[i].dot(sample.normals[i]), i % 3 == 0 || i == 1 ? -0.9f : -0.999f);
+  }
+  Mesh without = cloud;
+  without.normals.clear();
+  std::ranges::fill(cloud.normals, Vec3::Zero());
+  EXPECT_EQ(build_graph(cloud).normals, build_graph(without).normals);
+}
+
 TEST(Graph, RefusesWhatItCannotUse) {
   Mesh quads;
   quads.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};

@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <atomic>
+#include <chrono>
 #include <map>
 #include <numeric>
+#include <thread>
 
 #include "made_graph.h"
 #include "meshgrain/error.h"
@@ -423,6 +426,36 @@ TEST(Solver, CancellationStopsEveryLongCall) {
   context.reset();
   orientation->solve(context);
   EXPECT_EQ(orientation->field().directions, field.directions);
+}
+
+/// Whenever that was: nothing is done twice, or left out.
+TEST(Solver, CancellationLeavesNoTrace) {
+  const Shape& shape = bracket();
+  OrientationOptions options = orientation_options(4);
+  options.sweeps = 300;
+  const auto solver = shape.orientation(options);
+  Context context(2);
+  std::atomic<bool> is_done = false;
+  std::thread canceller([&] {
+    for (int k = 0; k < 3000 && !is_done; ++k) {
+      context.cancel();
+      std::this_thread::sleep_for(std::chrono::microseconds(20));
+    }
+    is_done = true;
+  });
+  int cancelled = 0;
+  for (bool goes_on = true; goes_on;) {
+    try {
+      goes_on = solver->step(context);
+    } catch (const Cancelled&) {
+      ++cancelled;
+      context.reset();
+    }
+  }
+  is_done = true;
+  canceller.join();
+  EXPECT_GT(cancelled, 0);
+  EXPECT_EQ(solver->field().directions, solve_orientation(shape.hierarchy, options).directions);
 }
 
 /// Figure 8. Equal sweeps over the finest level; those over all coarser ones cost about as much

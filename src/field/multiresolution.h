@@ -65,9 +65,11 @@ class Multiresolution {
       return true;
     }
     if (done()) return false;
-    sweep(context);
-    ++sweep_;
-    if (options_.record_energy) energies_.push_back({level_, sweep_, energy(context)});
+    if (sweep_ < sweeps()) {  // else it was cancelled before it could descend
+      sweep(context);
+      ++sweep_;
+      if (options_.record_energy) energies_.push_back({level_, sweep_, energy(context)});
+    }
     if (sweep_ >= sweeps() && level_ > 0) descend(context);
     return true;
   }
@@ -93,6 +95,7 @@ class Multiresolution {
     held_.clear();
     level_ = 0;
     sweep_ = sweeps();
+    color_ = 0;
   }
 
   void restart(std::span<const Index> region) {
@@ -106,21 +109,25 @@ class Multiresolution {
     for (int l = 0; l < top; ++l) restrict_level(static_cast<std::size_t>(l));
     level_ = top;
     sweep_ = 0;
+    color_ = 0;
     values_ = held_.back();
   }
 
   void freeze_integers(const Context& context) {
     active_.clear();  // of a restart on a region
     held_.clear();
+    color_ = 0;
     const Graph& finest = hierarchy_.levels[0];
-    integers_.resize(finest.neighbors.size());
+    auto integers = std::exchange(integers_, {});
+    integers.resize(finest.neighbors.size());
     context.for_ranges(finest.size(), grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         for (std::size_t e = finest.offsets[i]; e < finest.offsets[i + 1]; ++e) {
-          integers_[e] = kernels_[0].match(static_cast<Index>(i), e, values_.data());
+          integers[e] = kernels_[0].match(static_cast<Index>(i), e, values_.data());
         }
       }
     });
+    integers_ = std::move(integers);
   }
 
   double energy(const Context& context) const {
@@ -161,15 +168,19 @@ class Multiresolution {
     return hierarchy_.levels[0].size() < large ? 2 : 1;
   }
 
-  bool is_active(std::size_t i) const {
-    return active_.empty() || active_[static_cast<std::size_t>(level_)][i];
+  bool is_active(std::size_t i) const { return is_active(static_cast<std::size_t>(level_), i); }
+  bool is_active(std::size_t level, std::size_t i) const {
+    return active_.empty() || active_[level][i];
   }
 
   void sweep(const Context& context) {
     const Kernel& kernel = kernels_[static_cast<std::size_t>(level_)];
     const bool in_place = options_.schedule != Schedule::jacobi;
     std::vector<Value> next;
-    if (!in_place) next = values_;
+    if (!in_place) {
+      next = values_;
+      color_ = 0;  // nothing is left of a sweep that was cancelled
+    }
     Value* results = in_place ? values_.data() : next.data();
     visit(
         [&](std::span<const Index> nodes) {
@@ -209,7 +220,8 @@ class Multiresolution {
     // Every block of a few goes on by one node, then all of them by the next one.
     const std::size_t size = coloring().block_size;
     const std::size_t batch = at_once * std::max<std::size_t>(1, nodes_a_range / (at_once * size));
-    for (const std::vector<Index>& blocks : coloring().colors) {
+    for (; color_ < coloring().colors.size(); ++color_) {
+      const std::vector<Index>& blocks = coloring().colors[color_];
       context.for_ranges(blocks.size(), batch, [&](std::size_t begin, std::size_t end) {
         std::array<Index, at_once> nodes;
         for (std::size_t first = begin; first < end; first += at_once) {
@@ -224,23 +236,24 @@ class Multiresolution {
         }
       });
     }
+    color_ = 0;
   }
 
   /// Copies the solution to the next finer level.
   void descend(const Context& context) {
-    --level_;
-    sweep_ = 0;
-    const auto l = static_cast<std::size_t>(level_);
+    const auto l = static_cast<std::size_t>(level_) - 1;
     const std::vector<Index>& parents = hierarchy_.parents[l];
     std::vector<Value> finer(parents.size());
     context.for_ranges(finer.size(), grain, [&](std::size_t begin, std::size_t end) {
       kernels_[l].prolong(parents, static_cast<Index>(begin), static_cast<Index>(end),
                           values_.data(), finer.data());
       for (std::size_t i = begin; i < end; ++i) {
-        if (!is_active(i)) finer[i] = held_[l][i];
+        if (!is_active(l, i)) finer[i] = held_[l][i];
       }
     });
     values_.swap(finer);
+    --level_;
+    sweep_ = 0;
   }
 
   /// The opposite, for restart(): values of level l + 1 from those of level l.
@@ -268,6 +281,7 @@ class Multiresolution {
   std::vector<EnergyRecord>& energies_;
   int level_ = 0;
   int sweep_ = 0;
+  std::size_t color_ = 0;  // the next of the sweep, which may be cancelled and go on later
   std::uint64_t rounds_ = 0;
   std::vector<Value> values_;  // of the current level
   std::vector<Integers> integers_;

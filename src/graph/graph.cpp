@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <utility>
 
+#include "graph/cloud_normals.h"
 #include "graph/nearest_neighbors.h"
 #include "graph/vertex_graph.h"
 #include "mesh/sort_by_vertex.h"
@@ -14,7 +17,6 @@
 #include "mesh/vertex_normals.h"
 #include "mesh/vertex_ring.h"
 #include "meshgrain/error.h"
-#include "meshgrain/normals.h"
 #include "util/collect.h"
 
 namespace meshgrain {
@@ -37,7 +39,16 @@ void gather_neighbors(Graph& graph, const NeighborsOf& neighbors_of, const Conte
       graph.offsets[i + 1] = static_cast<Index>(out.size() - start);
     }
   });
-  for (std::size_t i = 0; i < n; ++i) graph.offsets[i + 1] += graph.offsets[i];
+  // SIMD lanes count entries with a sign.
+  constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
+  std::size_t entries = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    entries += graph.offsets[i + 1];
+    if (entries > most) {
+      throw Error("too large: the points have more than 2147483647 neighbours in all");
+    }
+    graph.offsets[i + 1] = static_cast<Index>(entries);
+  }
   graph.neighbors.resize(graph.offsets[n]);
   context.for_ranges(n, grain, [&](std::size_t begin, std::size_t) {
     auto& range = gathered[begin / grain];
@@ -125,8 +136,7 @@ Graph cloud_graph(const Mesh& cloud, const GraphOptions& options, const Context&
   if (cloud.positions.size() < 4) throw Error("a point cloud needs at least four points");
   Graph graph;
   graph.positions = cloud.positions;
-  graph.normals =
-      cloud.normals.empty() ? estimate_normals(cloud, options.neighbors, context) : cloud.normals;
+  graph.normals = cloud_normals(cloud, options.neighbors, context);
   const std::size_t n = cloud.positions.size();
   const Neighborhoods nearest = nearest_neighbors(cloud.positions, options.neighbors, context);
 

@@ -22,7 +22,11 @@ Output::Output(const std::filesystem::path& path) : path_(path), target_(path) {
       target_ = weakly_canonical(path, problem);
       if (problem) fail("cannot be written: " + problem.message());
     }
-    temporary_ = platform::temporary_beside(target_);
+    try {
+      temporary_ = platform::make_file_beside(target_);
+    } catch (const std::system_error& error) {
+      fail("cannot be written: " + error.code().message());
+    }
   }
   errno = 0;
   file_.open(temporary_.empty() ? target_ : temporary_, std::ios::binary | std::ios::trunc);

@@ -5,6 +5,8 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
+#include <cstdio>
 #include <fstream>
 #include <random>
 #include <system_error>
@@ -174,13 +176,21 @@ void replace_file(const std::filesystem::path& from, const std::filesystem::path
 }
 
 std::filesystem::path temporary_beside(const std::filesystem::path& path) {
-#ifdef MESHGRAIN_POSIX
-  static const auto process = static_cast<unsigned long>(::getpid());
-#else
-  static const auto process = static_cast<unsigned long>(std::random_device()());
-#endif
+  static const std::uint32_t process = std::random_device()();
   static std::atomic<unsigned long> count{0};
-  return path.parent_path() / fmt::format(".meshgrain-{}-{}.tmp", process, count++);
+  return path.parent_path() / fmt::format(".meshgrain-{:08x}-{}.tmp", process, count++);
+}
+
+std::filesystem::path make_file_beside(const std::filesystem::path& path) {
+  for (;;) {
+    std::filesystem::path made = temporary_beside(path);
+    errno = 0;
+    if (std::FILE* const file = std::fopen(made.string().c_str(), "wbx")) {
+      std::fclose(file);
+      return made;
+    }
+    if (errno != EEXIST) fail(errno != 0 ? errno : EIO);
+  }
 }
 
 }  // namespace meshgrain::platform

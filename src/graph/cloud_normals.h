@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "meshgrain/context.h"
+#include "meshgrain/mesh.h"
+
+namespace meshgrain {
+
+/// One unit normal a point of a cloud: its own; where it has none, or zero as a placeholder, an
+/// estimate (estimate_normals()) that looks the way those given nearby do.
+std::vector<Vec3> cloud_normals(const Mesh& cloud, std::size_t k, const Context& context);
+
+}  // namespace meshgrain
