@@ -19,8 +19,9 @@ struct CancellingCost {
 /// triangles passed of how much more is wrong with them (LatticeTriangle::misfit()). To cross an
 /// edge of a short feature line costs several times that.
 ///
-/// A large mesh is cut into pieces of at least `at_once` triangles, so many that they fit into the
-/// caches: several are done at a time, then some of them together, and so on.
+/// A large mesh is cut into pieces of about `at_once` triangles, or more where waves come far, so
+/// many that they fit into the caches: several are done at a time, then two of them together, and
+/// so on.
 void cancel_position_singularities(LatticeMesh& lattice, const CancellingCost& most,
                                    const Context& context, std::size_t at_once = 1 << 13);
 

@@ -63,8 +63,8 @@ Clusters average_clusters(const Graph& graph, const PositionField& position,
     }
   };
   for_indices(count, average, context);
-  const float mean_cover =
-      std::accumulate(result.cover.begin(), result.cover.end(), 0.0f) / static_cast<float>(count);
+  const auto mean_cover = static_cast<float>(
+      std::accumulate(result.cover.begin(), result.cover.end(), 0.0) / static_cast<double>(count));
   for (float& cover : result.cover) cover /= mean_cover;
   return result;
 }

@@ -14,7 +14,7 @@ struct ExtractionMap {
   PolygonMap map;
   std::vector<Index> sources;       // of each vertex, that of the extraction
   std::vector<Index> corners;       // of each halfedge, its place in the mesh's Faces::corners()
-  Clusters clusters;                // of its vertices (cover, edges and border left empty)
+  Clusters clusters;                // of its vertices (without their cover)
   std::vector<std::uint8_t> holes;  // one flag a halfedge
   std::vector<Index> lines;         // one an edge, or no_index
 };

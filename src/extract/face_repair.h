@@ -67,7 +67,7 @@ class FaceRepair {
   /// Closes quads by merging two opposite corners, as long as that leaves fewer irregular vertices.
   void close_quads(const Context& context);
   /// Closes `count` of them, wherever it leaves the fewest. Returns how many it could.
-  std::size_t close_quads(std::size_t count);
+  std::size_t close_quads(std::size_t count, const Context& context);
   /// Merges the corner opposite to the origin of h into that, which stays where it is if anything
   /// holds it.
   void close_quad(Index h);
@@ -91,7 +91,7 @@ class FaceRepair {
   void open_vertices();
   /// Cuts `count` of them, however many edges they have, wherever it leaves the fewest. Returns how
   /// many it could.
-  std::size_t open_vertices(std::size_t count);
+  std::size_t open_vertices(std::size_t count, const Context& context);
 
   // Quads alone (even_faces.cpp): what pair_odd_faces() does to the faces on its ways.
 
@@ -201,7 +201,7 @@ class FaceRepair {
   /// `gain` may say nothing where it is less than `least`, which at first is less than any.
   template <typename Worth, typename Gain, typename Cost, typename Apply>
   std::size_t change_best(std::size_t count, const Worth& least, const Gain& gain, const Cost& cost,
-                          const Apply& apply);
+                          const Apply& apply, const Context& context);
   int flip_gain(Index h) const;
   double chord_cost(std::span<const Index> orbit, std::size_t from) const;
   Vec3 along(Index h) const;
@@ -223,13 +223,17 @@ class FaceRepair {
 
 template <typename Worth, typename Gain, typename Cost, typename Apply>
 std::size_t FaceRepair::change_best(std::size_t count, const Worth& least, const Gain& gain,
-                                    const Cost& cost, const Apply& apply) {
+                                    const Cost& cost, const Apply& apply, const Context& context) {
+  // Beside what a change for the worse left, the next one may cost less: then the others wait, but
+  // not so many that there would be a pass over everything for each of thousands.
+  constexpr std::size_t passes = 64;
   struct Candidate {
     float cost;
     Index h;
   };
   std::size_t done = 0;
   while (done < count) {
+    context.check();
     Worth best = least;
     std::vector<Candidate> candidates;  // with that gain
     for (Index h = 0; h < map_.halfedges(); ++h) {
@@ -243,12 +247,12 @@ std::size_t FaceRepair::change_best(std::size_t count, const Worth& least, const
       return std::tie(a.cost, a.h) < std::tie(b.cost, b.h);
     });
     const std::size_t before = done;
+    const std::size_t most = best < Worth{} ? (count - done + passes - 1) / passes : count - done;
     for (const Candidate& c : candidates) {
-      if (done == count) break;
+      if (done == before + most) break;
       if (gain(c.h, best) != best) continue;  // what lies beside it has changed
       apply(c.h);
       ++done;
-      if (best < Worth{}) break;  // beside what that left it may cost less
     }
     if (done == before) break;
   }

@@ -278,16 +278,22 @@ std::vector<CollapsedMesh::Meeting> find_meetings(const Mesh& surface,
     Index a, b, source;
     auto operator<=>(const Pair&) const = default;
   };
-  std::vector<Index> first(surface.positions.size(), no_index);  // member
+  // Each meets the first and the one before it: all others, where thousands are, would take long.
+  std::vector<Index> first(surface.positions.size(), no_index), last = first;  // members
   std::vector<Pair> pairs;
+  const auto meet = [&](Index one, Index other) {
+    if (cluster[one] == cluster[other]) return;
+    const auto [a, b] = std::minmax({cluster[one], cluster[other]});
+    pairs.push_back({a, b, sources[one]});
+  };
   for (Index m = 0; m < sources.size(); ++m) {
-    Index& other = first[sources[m]];
-    if (other == no_index) {
-      other = m;
-    } else if (cluster[other] != cluster[m]) {
-      const auto [a, b] = std::minmax({cluster[other], cluster[m]});
-      pairs.push_back({a, b, sources[m]});
+    const Index source = sources[m], before = std::exchange(last[source], m);
+    if (before == no_index) {
+      first[source] = m;
+      continue;
     }
+    meet(m, first[source]);
+    if (before != first[source]) meet(m, before);
   }
   if (pairs.empty()) return {};
   std::sort(pairs.begin(), pairs.end());

@@ -1,5 +1,7 @@
 #include "extract/pair_odd_faces.h"
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <algorithm>
 #include <array>
 #include <compare>
@@ -206,9 +208,9 @@ std::vector<std::vector<Match>> OddFaces::matches() {
       return outside || result[i].size() == enough;
     });
   };
+  tbb::enumerable_thread_specific<Reached> reached;  // as large as the map
   context_.for_ranges(faces_.size(), grain, [&](std::size_t begin, std::size_t end) {
-    Reached reached;
-    for (auto i = static_cast<Index>(begin); i < end; ++i) look(i, reached);
+    for (auto i = static_cast<Index>(begin); i < end; ++i) look(i, reached.local());
   });
   known_.clear();
   return result;

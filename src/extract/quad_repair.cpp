@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include "extract/face_repair.h"
 #include "util/collect.h"
@@ -317,12 +318,16 @@ void FaceRepair::close_quads(const Context& context) {
   };
   const auto gains = [&](Index h) { return closing_gain(h, 1).has_value(); };
   for (const Index h : indices_where(map_.halfedges(), gains, context)) marks.set(h);
-  for (Index h = marks.first(0); h != no_index; h = marks.first(h + 1)) {
-    if (!gains(h)) continue;
-    const Index kept = map_.origin(h);
-    close_quad(h);
-    // The corners of the faces there have other neighbours now.
-    map_.for_each_leaving(kept, [&](Index face) { map_.for_orbit(face, mark_faces); });
+  for (bool again = true; std::exchange(again, false);) {
+    const auto count = static_cast<Index>(map_.halfedges());
+    for (Index h = marks.take(0, count); h != no_index; h = marks.take(h + 1, count)) {
+      if (!gains(h)) continue;
+      const Index kept = map_.origin(h);
+      close_quad(h);
+      // The corners of the faces there have other neighbours now.
+      map_.for_each_leaving(kept, [&](Index face) { map_.for_orbit(face, mark_faces); });
+      again = true;
+    }
   }
 }
 
@@ -397,7 +402,7 @@ void FaceRepair::open_vertices() {
   }
 }
 
-std::size_t FaceRepair::open_vertices(std::size_t count) {
+std::size_t FaceRepair::open_vertices(std::size_t count, const Context& context) {
   constexpr Opening none{.gain = std::numeric_limits<int>::min()};
   const auto opening = [&](Index h, int least) -> std::optional<Opening> {
     if (map_.removed(h) || !may_open(map_.origin(h))) return std::nullopt;
@@ -412,15 +417,15 @@ std::size_t FaceRepair::open_vertices(std::size_t count) {
       },
       // Where there is most room.
       [&](Index h) { return -distance(map_.target(h), map_.target(any(h).last)); },
-      [&](Index h) { open(any(h)); });
+      [&](Index h) { open(any(h)); }, context);
 }
 
-std::size_t FaceRepair::close_quads(std::size_t count) {
+std::size_t FaceRepair::close_quads(std::size_t count, const Context& context) {
   return change_best(
       count, std::numeric_limits<int>::min(),
       [&](Index h, int least) { return closing_gain(h, least); },
       [&](Index h) { return distance(map_.origin(h), map_.target(map_.next(h))); },
-      [&](Index h) { close_quad(h); });
+      [&](Index h) { close_quad(h); }, context);
 }
 
 }  // namespace meshgrain

@@ -28,13 +28,13 @@ std::size_t change_faces(Extraction& extraction, int posy, const Change& change,
 std::size_t remove_single_faces(Extraction& extraction, int posy, std::size_t count,
                                 const Context& context) {
   const auto remove = [&](FaceRepair& repair) {
-    return posy == 4 ? repair.close_quads(count) : repair.contract_edges(count, context);
+    return posy == 4 ? repair.close_quads(count, context) : repair.contract_edges(count, context);
   };
   return change_faces(extraction, posy, remove, context);
 }
 
 std::size_t add_single_quads(Extraction& extraction, std::size_t count, const Context& context) {
-  const auto add = [&](FaceRepair& repair) { return repair.open_vertices(count); };
+  const auto add = [&](FaceRepair& repair) { return repair.open_vertices(count, context); };
   return change_faces(extraction, 4, add, context);
 }
 

@@ -107,7 +107,8 @@ std::size_t FaceRepair::contract_edges(std::size_t count, const Context& context
           clusters_.positions[a] = 0.5f * (clusters_.positions[a] + clusters_.positions[b]);
         }
         contract(h);
-      });
+      },
+      context);
   flip_edges(context);
   return done;
 }

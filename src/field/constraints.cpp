@@ -46,7 +46,7 @@ std::vector<DirectionConstraints> spread_constraints(
                const std::size_t l = static_cast<std::size_t>(&coarse - levels.data());
                const Vec3& n = hierarchy.levels[l].normals[k];
                const Vec3 d = project_to_plane(fine.directions[i], n).normalized();
-               if (!d.allFinite()) return;
+               if (!(d.squaredNorm() > 0.5f)) return;  // it points along the normal
                if (coarse.strengths[k] == 0) {
                  coarse.directions[k] = d;
                  coarse.strengths[k] = fine.strengths[i];

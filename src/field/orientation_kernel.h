@@ -160,7 +160,9 @@ class OrientationKernel {
     if (constraints_->strengths.empty() || constraints_->strengths[i] == 0) return value;
     const Vec3& n = graph_->normals[i];
     const float length = value.norm(), strength = constraints_->strengths[i];
-    const Vec3 target = prolong(i, constraints_->directions[i]).normalized();
+    const Vec3& direction = constraints_->directions[i];
+    if (!(project_to_plane(direction, n).norm() > 1e-6f)) return value;  // along the normal
+    const Vec3 target = prolong(i, direction).normalized();
     const Vec3 similar = Group::rotate(target, n, Group::match_intrinsic(value, n, target));
     const Vec3 mixed = (1 - strength) * value + (strength * length) * similar;
     if constexpr (E == OrientationEnergy::convex) return mixed;

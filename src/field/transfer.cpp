@@ -1,5 +1,7 @@
 #include "field/transfer.h"
 
+#include <span>
+
 #include "field/posy.h"
 #include "field/rosy.h"
 #include "field/with_symmetry.h"
@@ -21,11 +23,8 @@ std::vector<Index> nearest_vertices(const Fields& fields, const Graph& graph, co
   return nearest_points(points, graph.positions, context);
 }
 
-}  // namespace
-
-OrientationField transfer_orientation(const Fields& fields, const Graph& graph, const Frame& frame,
-                                      const Context& context) {
-  const auto nearest = nearest_vertices(fields, graph, frame, context);
+OrientationField orientation_of(const Fields& fields, const Graph& graph,
+                                std::span<const Index> nearest) {
   OrientationField result{fields.orientation.rosy, std::vector<Vec3>(graph.size())};
   for (std::size_t i = 0; i < graph.size(); ++i) {
     const Vec3 d = project_to_plane(fields.orientation.directions[nearest[i]], graph.normals[i]);
@@ -34,10 +33,17 @@ OrientationField transfer_orientation(const Fields& fields, const Graph& graph, 
   return result;
 }
 
+}  // namespace
+
+OrientationField transfer_orientation(const Fields& fields, const Graph& graph, const Frame& frame,
+                                      const Context& context) {
+  return orientation_of(fields, graph, nearest_vertices(fields, graph, frame, context));
+}
+
 PositionField transfer_position(const Fields& fields, const Graph& graph, const Frame& frame,
                                 const Context& context) {
   const auto nearest = nearest_vertices(fields, graph, frame, context);
-  const OrientationField orientation = transfer_orientation(fields, graph, frame, context);
+  const OrientationField orientation = orientation_of(fields, graph, nearest);
   const PositionField& from = fields.position;
   PositionField result;
   result.posy = from.posy;
