@@ -30,6 +30,25 @@ TEST(CountSearch, FindsWhatHardlyChanges) {
   EXPECT_LE(attempts(0.9, 0.35), 9);
 }
 
+/// Lines and holes need so many, whatever is asked for; but fewer attempts do not tell.
+TEST(CountSearch, GivesUpWhereNothingChanges) {
+  const auto attempts_until_in_vain = [](double more, double slope) {
+    CountSearch search;
+    for (int count = 1; count <= 20; ++count) {
+      const double noise = count % 2 == 0 ? 0.05 : -0.05;
+      search.go_on(std::exp(more + slope * search.asked() + noise), 1);
+      if (search.is_in_vain()) return count;
+      if (std::abs(more + slope * search.asked()) < 0.01) break;
+    }
+    return 0;
+  };
+  EXPECT_EQ(attempts_until_in_vain(1, 0), 3);
+  EXPECT_EQ(attempts_until_in_vain(3.6, 0), 3);
+  EXPECT_EQ(attempts_until_in_vain(0.6, 0.5), 0);
+  EXPECT_EQ(attempts_until_in_vain(0.9, 0.35), 0);
+  EXPECT_EQ(attempts_until_in_vain(-0.9, 0), 0);  // too few
+}
+
 /// Chance must not be taken for a slope.
 TEST(CountSearch, StaysNearTheMeanOfAttemptsThatLieClose) {
   CountSearch search;

@@ -28,6 +28,7 @@ class Untwisting {
     around_ = vertex_faces(mesh_, context_);
     start_ = mesh_.positions;
     hold();
+    tries_left_ = tries_for_a_mesh + tries_a_face * mesh_.faces.size();
     for (const std::size_t price : prices) {
       for (const int rings : {2, 3, 5}) {
         // A mesh with more of them is too coarse for its surface: no need to try for minutes.
@@ -43,6 +44,8 @@ class Untwisting {
  private:
   /// How many more crossings may come of each quad that is mended.
   static constexpr std::size_t prices[] = {0, 10, 1000};
+  /// Of vertices: twice as many as were ever needed to untwist all, which takes seconds.
+  static constexpr std::size_t tries_for_a_mesh = 300000, tries_a_face = 10;
 
   /// Whether the mesh is crumpled all over.
   bool is_hopeless(std::size_t twisted) const {
@@ -121,7 +124,7 @@ class Untwisting {
 
   void mend(Index f, int rings, std::size_t price) {
     context_.check();
-    if (!is_twisted(f)) return;
+    if (tries_left_ == 0 || !is_twisted(f)) return;
     const Place place = around(f, rings, price);
     Eigen::AlignedBox3f box;
     for (const Index g : place.faces) box.extend(face_box(mesh_, g));
@@ -148,6 +151,7 @@ class Untwisting {
     for (int sweep = 0; sweep < sweeps && step > last_step * place.edge; ++sweep) {
       bool any = false;
       for (const Index v : place.vertices) any = try_around(v, step, place.edge) || any;
+      tries_left_ -= std::min(tries_left_, place.vertices.size());
       if (!any) step /= 2;
     }
   }
@@ -179,6 +183,7 @@ class Untwisting {
   VertexFaces around_;
   std::vector<Vec3> start_;  // positions, before all
   std::vector<Stay> stays_;
+  std::size_t tries_left_ = 0;
 };
 
 }  // namespace

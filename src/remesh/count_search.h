@@ -13,6 +13,9 @@ class CountSearch {
   /// What is asked for, as the logarithm of its share of what was at first.
   double asked() const { return asked_; }
 
+  /// Whether there are too many however few are asked for.
+  bool is_in_vain() const { return is_in_vain_; }
+
   /// An attempt with what was asked for has so many times the faces that are wanted; the next one
   /// is to have `aim` times as many as are wanted.
   void go_on(double ratio, double aim) {
@@ -30,12 +33,16 @@ class CountSearch {
     const double squares = sum_squares_ - count_ * mean_asked * mean_asked;
     const double products = sum_products_ - count_ * mean_asked * mean_got;
     const double slope = std::clamp((products + chance) / (squares + chance), least_slope, 1.0);
+    // Fewer are no answer to far fewer: there are as many as lines and holes need.
+    constexpr double far = 1.3 * 1.3 / 2, hardly = 0.1;
+    is_in_vain_ = got > 0 && count_ > 2 && squares > far && products < hardly * squares;
     constexpr double most_at_once = 1.4;
     const double next = mean_asked + (std::log(aim) - mean_got) / slope;
     asked_ = std::clamp(next, asked_ - most_at_once, asked_ + most_at_once);
   }
 
  private:
+  bool is_in_vain_ = false;
   double asked_ = 0;
   double count_ = 0, sum_asked_ = 0, sum_got_ = 0, sum_squares_ = 0, sum_products_ = 0;
 };

@@ -90,6 +90,7 @@ void Pipeline::find_faces() {
     is_changeable = is_changeable && !is_near;
     const double before = search.asked();
     search.go_on(ratio, !is_changeable ? 1 : attempt < 3 ? count_to_aim_at() : 1.01);
+    if (search.is_in_vain()) break;
     const double more = search.asked() - before;
     if (!borders_.empty()) {
       has_room = fit_lengths_to_borders(std::exp(more));
