@@ -12,6 +12,7 @@ namespace {
 
 /// For each locked vertex the mean distance between those around it.
 std::vector<float> mean_distances(const BorderLoop& loop, const Graph& graph, double reach) {
+  constexpr double least = 1e-3;  // of a face: faces for shorter edges would be without number
   const std::size_t count = loop.locked.size();
   std::vector<double> ways(3 * count + 1, 0);  // three times around
   for (std::size_t k = 0; k < 3 * count; ++k) {
@@ -27,7 +28,8 @@ std::vector<float> mean_distances(const BorderLoop& loop, const Graph& graph, do
     while (begin + 1 < middle && ways[middle] - ways[begin + 1] >= reach) ++begin;
     end = std::max(end, middle + 1);
     while (end < middle + count / 2 && ways[end] - ways[middle] < reach) ++end;
-    result[k] = static_cast<float>((ways[end] - ways[begin]) / static_cast<double>(end - begin));
+    const double mean = (ways[end] - ways[begin]) / static_cast<double>(end - begin);
+    result[k] = static_cast<float>(std::max(mean, least * reach));
   }
   return result;
 }

@@ -1,5 +1,6 @@
 #include "remesh/clean_input.h"
 
+#include "mesh/contract_border.h"
 #include "mesh/weld.h"
 #include "meshgrain/clean.h"
 #include "remesh/notes.h"
@@ -14,6 +15,13 @@ std::vector<std::string> clean_input(Mesh& input, const Context& context) {
                                     " vertices into others at the same place, as faces shared few");
   }
   return notes;
+}
+
+std::vector<std::string> contract_border_of(Mesh& input, const Context& context) {
+  const std::size_t merged = contract_border(input, context);
+  if (merged == 0) return {};
+  return {"merged " + std::to_string(merged) +
+          " vertices of the border into others, as edges between them have no length"};
 }
 
 }  // namespace meshgrain

@@ -12,4 +12,7 @@ namespace meshgrain {
 /// is_torn()). Returns a line for each kind of what was done.
 std::vector<std::string> clean_input(Mesh& input, const Context& context);
 
+/// contract_border(), once it is a mesh that may have a border. Returns notes, too.
+std::vector<std::string> contract_border_of(Mesh& input, const Context& context);
+
 }  // namespace meshgrain

@@ -282,9 +282,10 @@ void Pipeline::note_odd_borders() {
   std::size_t triangles = 0;
   for (std::size_t f = 0; f < faces.size(); ++f) triangles += faces.degree(f) == 3;
   if (triangles == 0) return;
-  result_.report.notes.push_back(
-      std::to_string(triangles) + (triangles == 1 ? " triangle" : " triangles") +
-      ": a border of an odd number of edges cannot be met by quads alone");
+  result_.report.notes.push_back(std::to_string(triangles) +
+                                 (triangles == 1 ? " triangle" : " triangles") +
+                                 " beside borders that stay: quads alone meet none with an odd "
+                                 "number of edges, nor all others");
 }
 
 void Pipeline::report_fields() {

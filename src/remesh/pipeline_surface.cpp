@@ -49,7 +49,10 @@ void Pipeline::clean_up(Mesh input) {
     surface_ = is_ready ? std::move(input) : triangulate(input);
     const OrientReport oriented = orient_faces(surface_, context_);
     add_notes(describe(oriented));
-    if (!is_cloud_ && oriented.may_have_border) add_notes(describe(find_seams(surface_, context_)));
+    if (!is_cloud_ && oriented.may_have_border) {
+      add_notes(contract_border_of(surface_, context_));
+      add_notes(describe(find_seams(surface_, context_)));
+    }
     drop_pieces();
   });
 }
