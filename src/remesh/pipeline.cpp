@@ -282,10 +282,9 @@ void Pipeline::note_odd_borders() {
   std::size_t triangles = 0;
   for (std::size_t f = 0; f < faces.size(); ++f) triangles += faces.degree(f) == 3;
   if (triangles == 0) return;
-  result_.report.notes.push_back(std::to_string(triangles) +
-                                 (triangles == 1 ? " triangle" : " triangles") +
-                                 " beside borders that stay: quads alone meet none with an odd "
-                                 "number of edges, nor all others");
+  result_.report.notes.push_back(
+      std::to_string(triangles) + (triangles == 1 ? " triangle" : " triangles") +
+      ": quads alone do not meet the borders that stay (none meet an odd number of edges)");
 }
 
 void Pipeline::report_fields() {
