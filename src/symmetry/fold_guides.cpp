@@ -14,25 +14,19 @@ class Folding {
       : axis_(plane.axis), offset_(plane.offset), out_(out) {}
 
   void fold(const Guide& guide) {
-    std::vector<Point> points = guide.points;
-    const auto crossed = [&](std::size_t k) {
-      return side(points[k]) * side(points[(k + 1) % points.size()]) < 0;
-    };
-    if (guide.closed && !points.empty()) {
+    std::vector<Point> points = with_crossings(guide);
+    if (guide.closed) {
       // Open at the first crossing, if there is any.
       std::size_t k = 0;
-      while (k < points.size() && !crossed(k)) ++k;
+      while (k < points.size() && !crosses(points, k, true)) ++k;
       if (k == points.size()) {
         Guide whole = guide;
         for (Point& p : whole.points) p = above(p);
         out_.push_back(std::move(whole));
         return;
       }
-      const Point start = crossing(points[k], points[(k + 1) % points.size()]);
-      std::rotate(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(k) + 1,
-                  points.end());
-      points.insert(points.begin(), start);
-      points.push_back(start);
+      std::rotate(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(k), points.end());
+      points.push_back(points[0]);
     }
     Guide part{{}, false, guide.strength};
     const auto finish = [&] {
@@ -41,17 +35,42 @@ class Folding {
     };
     for (std::size_t k = 0; k < points.size(); ++k) {
       part.points.push_back(above(points[k]));
-      if (k + 1 == points.size() || !crossed(k)) continue;
-      const Point p = crossing(points[k], points[k + 1]);
-      part.points.push_back(p);
+      if (!crosses(points, k, false)) continue;
       finish();
-      part.points.push_back(p);
+      part.points.push_back(above(points[k]));
     }
     finish();
   }
 
  private:
   double side(const Point& p) const { return p[axis_] - offset_; }
+
+  /// Its points, and others in the plane wherever it goes from one side to the other between two.
+  std::vector<Point> with_crossings(const Guide& guide) const {
+    const std::size_t count = guide.points.size();
+    std::vector<Point> result;
+    for (std::size_t k = 0; k < count; ++k) {
+      const Point &here = guide.points[k], &next = guide.points[(k + 1) % count];
+      result.push_back(here);
+      if (k + 1 == count && !guide.closed) break;
+      if (side(here) * side(next) < 0) result.push_back(crossing(here, next));
+    }
+    return result;
+  }
+
+  /// Whether a point is in the plane, and the first ones before and after it that are not lie on
+  /// different sides; of several in a row, the last one is.
+  bool crosses(const std::vector<Point>& points, std::size_t k, bool around) const {
+    const std::size_t count = points.size();
+    if (side(points[k]) != 0 || (!around && k + 1 == count)) return false;
+    const double after = side(points[(k + 1) % count]);
+    if (after == 0) return false;
+    for (std::size_t n = 1, i = k; n < count && (around || i > 0); ++n) {
+      i = (i + count - 1) % count;
+      if (const double before = side(points[i]); before != 0) return before * after < 0;
+    }
+    return false;
+  }
 
   Point above(Point p) const {
     p[axis_] = offset_ + std::abs(side(p));
