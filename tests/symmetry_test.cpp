@@ -259,6 +259,17 @@ TEST(Symmetry, TellsWhatWasMended) {
   EXPECT_FALSE(plain.empty());
 }
 
+/// Those in the planes are not there twice.
+TEST(Symmetry, VerticesAreCountedOnce) {
+  RemeshOptions options;
+  options.vertex_count = 1000;
+  for (const bool across_z : {false, true}) {
+    options.symmetry = {.axes = {true, false, across_z}};
+    const RemeshResult result = remesh(ring(0.3f), options);
+    EXPECT_NEAR(static_cast<double>(result.mesh.positions.size()), 1000, 25);
+  }
+}
+
 /// As a whole it is nearly symmetric, but a half has no horn, or the result would have two.
 TEST(Symmetry, AHornOnOneSideIsNotLost) {
   Mesh mesh = symmetric_blob(0);

@@ -57,6 +57,16 @@ std::vector<MirrorPlane> find_symmetry(const Mesh& input, const Symmetry& symmet
   return {};
 }
 
+/// Of the border, in the plane through the origin across an axis.
+double length_in_plane(const Mesh& mesh, int axis, const Context& context) {
+  double sum = 0;
+  for (const auto& [a, b] : border_edges(mesh, context)) {
+    const Vec3 &p = mesh.positions[a], &q = mesh.positions[b];
+    if (p[axis] == 0 && q[axis] == 0) sum += (q - p).norm();
+  }
+  return sum;
+}
+
 /// What a manifold would have twice, were both halves of it like one; of others nothing.
 struct Topology {
   std::size_t components = 0, boundary_loops = 0;
@@ -89,12 +99,13 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const RemeshHal
     options.vertex_count = std::max<std::size_t>(input.positions.size() / 16, 1);
   }
   Topology before;
+  double side = 0;  // of the faces to be
   if (!planes.empty()) {
     before = topology(input);
     input = triangulate(input);
     // Before the cut, whose border has to stay where it is.
     const Target target(options, options.faces, vertices, 1);
-    const double side = target.face_side(surface_area(input, context));
+    side = target.face_side(surface_area(input, context));
     if (take_out_noise(input, options, side, notes, context)) {
       options.features.creases = Creases::marked;
     }
@@ -108,7 +119,11 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const RemeshHal
     // Positions now count from the plane, and are in the units of the input from its origin.
     options.guides = fold_guides(options.guides, {plane.axis, input.origin[plane.axis], 0});
     options.face_count = (options.face_count + 1) / 2;
-    options.vertex_count = (options.vertex_count + 1) / 2;
+    if (options.vertex_count > 0) {
+      const double in_both = length_in_plane(input, plane.axis, context) / side;
+      options.vertex_count =
+          (options.vertex_count + static_cast<std::size_t>(std::lround(in_both)) + 1) / 2;
+    }
     // A point beyond the plane has its mirror image on this side.
     double& coordinate = options.sizing.point[plane.axis];
     const double middle = input.origin[plane.axis];
