@@ -9,6 +9,7 @@
 #include <set>
 
 #include "made_fields.h"
+#include "mesh/border.h"
 #include "meshgrain/error.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
@@ -16,6 +17,7 @@
 #include "meshgrain/surface.h"
 #include "meshgrain/triangulate.h"
 #include "same_topology.h"
+#include "symmetry/border_in_planes.h"
 #include "util/bounding_box.h"
 
 namespace meshgrain {
@@ -257,6 +259,24 @@ TEST(Symmetry, TellsWhatWasMended) {
   notes.pop_back();
   EXPECT_EQ(notes, plain);
   EXPECT_FALSE(plain.empty());
+}
+
+/// Even if it has strayed from them by more than the sides of faces, as on parts few faces wide.
+TEST(Symmetry, NothingStaysOpenBetweenTwoPlanes) {
+  Mesh mesh = ring(0.3f);
+  const MeshStatistics whole = mesh_statistics(mesh);
+  const std::vector<MirrorPlane> planes{{0, 0, 0}, {1, 0, 0}};
+  EXPECT_FALSE(has_border_in_planes_only(triangulate(sample_shape("plate")), planes, Context()));
+  for (const MirrorPlane& plane : planes) cut_at(mesh, plane);
+  EXPECT_TRUE(has_border_in_planes_only(mesh, planes, Context()));
+  for (const auto& edge : border_edges(mesh)) {
+    Vec3& p = mesh.positions[edge[0]];
+    (p.x() < p.y() ? p.x() : p.y()) += 0.05f * static_cast<float>(edge[0] % 3);
+  }
+  EXPECT_FALSE(has_border_in_planes_only(mesh, planes, Context()));
+  put_border_into_planes(mesh, planes, Context());
+  for (const MirrorPlane& plane : planes) add_mirror_image(mesh, plane.axis, 1e-6);
+  made::expect_same_topology(mesh_statistics(mesh), whole);
 }
 
 /// Those in the planes are not there twice.

@@ -16,6 +16,7 @@
 #include "remesh/clean_input.h"
 #include "remesh/take_out_noise.h"
 #include "remesh/target.h"
+#include "symmetry/border_in_planes.h"
 #include "symmetry/fold_guides.h"
 #include "symmetry/plane_search.h"
 
@@ -129,18 +130,14 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const RemeshHal
     const double middle = input.origin[plane.axis];
     coordinate = middle + std::abs(coordinate - middle);
   }
-  const bool is_closed = planes.size() == 1 &&
-                         std::ranges::all_of(border_edges(input, context), [&](const auto& edge) {
-                           return input.positions[edge[0]][planes[0].axis] == 0 &&
-                                  input.positions[edge[1]][planes[0].axis] == 0;
-                         });
+  const bool is_closed = !planes.empty() && has_border_in_planes_only(input, planes, context);
   // Where a half is a single quad wide, its two sides would be in the plane.
   if (!planes.empty()) options.fine_lattice = false;
   RemeshResult result = remesh_half(std::move(input), options, context);
+  if (is_closed) put_border_into_planes(result.mesh, planes, context);
+  const double near = is_closed ? std::numeric_limits<double>::min()
+                                : 0.2 * edge_lengths(result.mesh, context).mean;
   for (const MirrorPlane& plane : planes) {
-    // All of the border of what was closed must come to lie on the plane.
-    const double near = is_closed ? std::numeric_limits<double>::infinity()
-                                  : 0.2 * edge_lengths(result.mesh, context).mean;
     add_mirror_image(result.mesh, plane.axis, near);
     notes.emplace_back("made symmetric across ").push_back("xyz"[plane.axis]);
   }
