@@ -58,6 +58,9 @@ void check(const RemeshOptions& options) {
   }
   if (!(options.sizing.grading > 1)) throw Error("the grading of sizes must be larger than 1");
   if (options.smoothing < 0) throw Error("the number of smoothing iterations must not be negative");
+  if (options.graph.nodes == GraphNodes::faces && options.symmetry.any()) {
+    throw Error("results can be made symmetric over the input's vertices, not over its faces");
+  }
   if (options.lock_borders && options.symmetry.any()) {
     throw Error("borders cannot be locked and the result made symmetric: leave one of them out");
   }

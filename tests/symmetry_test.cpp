@@ -332,6 +332,13 @@ TEST(Symmetry, NeedsASurface) {
   EXPECT_THROW(remesh(mesh, options), Error);
 }
 
+TEST(Symmetry, NeedsFieldsOverVertices) {
+  RemeshOptions options;
+  options.symmetry.automatic = true;
+  options.graph.nodes = GraphNodes::faces;
+  EXPECT_THROW(remesh(symmetric_blob(0), options), Error);
+}
+
 TEST(Symmetry, NeedsAMesh) {
   Mesh cloud = sample_shape("blob", 0.3);
   cloud.faces.clear();

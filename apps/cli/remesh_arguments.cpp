@@ -282,8 +282,10 @@ void add_options(CLI::App& app, Arguments& a) {
   method(app.add_flag_callback(
       "--no-coarsen", [&o] { o.coarsen = false; },
       "solve over all vertices of the input, also where far fewer are enough"));
-  method(add_choice(app, "--graph", o.graph.nodes, graph_nodes, "NODES",
-                    "fields live on the input's vertices (default) or faces"));
+  method(
+      add_choice(app, "--graph", o.graph.nodes, graph_nodes, "NODES",
+                 "fields live on the input's vertices (default) or faces (the paper's extraction: "
+                 "follows no creases and borders, and may change the topology)"));
   method(add_choice(app, "--weights", o.graph.weights, graph_weights, "WEIGHTS",
                     "of the graph's edges: uniform (default) or geometric"));
   method(app.add_option("--crease-normals", o.graph.crease_degrees,
