@@ -36,7 +36,7 @@ void cut_at(Mesh& triangles, const MirrorPlane& plane);
 std::size_t count_faces_in(const Mesh& mesh, const MirrorPlane& plane);
 
 /// Adds the mirror image about the plane through Mesh::origin across `axis`. Vertices of the border
-/// less than `near` from it move onto it, and belong to both halves.
+/// less than `near` from it move onto it, and belong to both halves. Values are left out.
 void add_mirror_image(Mesh& mesh, int axis, double near);
 
 }  // namespace meshgrain

@@ -31,7 +31,7 @@ NormalFilter::NormalFilter(Mesh& triangles, Border border, const Context& contex
     std::vector<Index> faces;
     for (std::size_t f = begin; f < end; ++f) {
       ring(f, faces);
-      starts_[f + 1] = static_cast<Index>(faces.size());
+      starts_[f + 1] = faces.size();
     }
   });
   for (std::size_t f = 0; f < count; ++f) starts_[f + 1] += starts_[f];
@@ -40,7 +40,7 @@ NormalFilter::NormalFilter(Mesh& triangles, Border border, const Context& contex
     std::vector<Index> faces;
     for (std::size_t f = begin; f < end; ++f) {
       ring(f, faces);
-      std::copy(faces.begin(), faces.end(), neighbors_.begin() + starts_[f]);
+      std::copy(faces.begin(), faces.end(), neighbors_.data() + starts_[f]);
     }
   });
   stays_.assign(mesh_.positions.size(), 0);

@@ -50,7 +50,8 @@ class NormalFilter {
   int round_ = 0;
   VertexFaces vertex_faces_;
   std::vector<std::uint8_t> stays_;
-  std::vector<Index> starts_, neighbors_;
+  std::vector<std::size_t> starts_;
+  std::vector<Index> neighbors_;
   std::vector<Facet> facets_;
   std::vector<Patch> patches_;
   std::vector<Vec3> guides_, normals_;

@@ -156,15 +156,17 @@ void mark_edges(Mesh& mesh, const Polylines& lines, const Context& context) {
   const std::vector<Edge> edges = edges_of(mesh);
   const std::vector<Index> vertices = Places(mesh, frame, edges).of(lines, context);
   Ways ways(mesh, frame, edges);
+  std::vector<std::array<Index, 2>> found;
   for (std::size_t line = 0; line < lines.size(); ++line) {
     for (Index k = lines.begin(line); k + 1 < lines.end(line); ++k) {
       context.check();
       const Index a = vertices[k], b = vertices[k + 1];
-      if (a == b || ways.append(a, b, mesh.marked_edges)) continue;
+      if (a == b || ways.append(a, b, found)) continue;
       throw Error(fmt::format("no edges of the mesh lead from vertex {} to vertex {}",
                               lines.vertices[k] + 1, lines.vertices[k + 1] + 1));
     }
   }
+  mesh.marked_edges.insert(mesh.marked_edges.end(), found.begin(), found.end());
 }
 
 }  // namespace meshgrain

@@ -169,6 +169,7 @@ void add_mirror_image(Mesh& mesh, int axis, double near) {
       on_plane[v] = 1;
     }
   }
+  mesh.values.clear();  // those of the other half are not known
   drop_ears(mesh, on_plane);
   take_away_chords(mesh, on_plane, axis);
   const auto count = static_cast<Index>(mesh.positions.size());
