@@ -167,7 +167,7 @@ RimAndSharpEdges rim_and_sharp_edges(const Mesh& mesh, double degrees, const Con
     Edges rim;
     std::vector<SharpEdge> sharp;
   };
-  const double flattest = std::cos(degrees * std::numbers::pi / 180);
+  const double flattest = degrees < 0 ? 2 : std::cos(degrees * std::numbers::pi / 180);
   const auto take = [&](Index a, Index b, const EdgeFaces& faces, Found& out) {
     if (faces.forth != 1 || faces.back != 1) return out.rim.push_back({a, b});
     const Vec3 &left = normals[faces.left], &right = normals[faces.right];
