@@ -52,7 +52,7 @@ Chords::Chords(const Mesh& mesh, std::span<const LineEdge> edges, const Rails& r
 
 std::optional<double> Chords::way(Index v, const Vec3& p, Index line, double near) const {
   const auto nearest = [&](double way) {
-    if (!lines().is_closed(line) || !(length(line) > 0)) return way;
+    if (!lines().is_closed(line)) return way;
     return near + std::remainder(way - near, length(line));
   };
   if (rails_.slides(v)) {
@@ -71,9 +71,7 @@ std::optional<double> Chords::way(Index v, const Vec3& p, Index line, double nea
 Chords::Stop Chords::stop_at(Index line, double way) const {
   const Index begin = lines().begin(line), last = lines().end(line) - 1;
   double here = way;
-  if (lines().is_closed(line) && length(line) > 0) {
-    here -= length(line) * std::floor(way / length(line));
-  }
+  if (lines().is_closed(line)) here -= length(line) * std::floor(way / length(line));
   const auto above = std::upper_bound(ways_.begin() + begin + 1, ways_.begin() + last, here);
   const auto segment = static_cast<Index>(above - ways_.begin()) - 1;
   const double share =
@@ -185,7 +183,6 @@ double Chords::depth(Index line, double from, double to) const {
 double Chords::cut_off(Index line, const Stop& from, const Stop& to) const {
   const Index begin = lines().begin(line), last = lines().end(line) - 1;
   // What the rounds of a closed line add to the ways of its points.
-  if (!(length(line) > 0)) return 0;
   double rounds = std::round((from.way - ways_[from.segment]) / length(line)) * length(line);
   if (!lines().is_closed(line)) rounds = 0;
   double sum = 0, way_before = from.way, before = 0;

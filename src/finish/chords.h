@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
@@ -34,7 +35,8 @@ class Chords {
   /// is none.
   const std::array<Index, 2>& beside(Index v) const { return beside_[v]; }
 
-  double length(Index line) const { return ways_[lines().end(line) - 1]; }
+  /// Never 0, also if all of the line is one place.
+  double length(Index line) const { return std::max(ways_[lines().end(line) - 1], 1e-30); }
 
   /// Where on a line a vertex is, by the way that is nearest to `near`. Nothing if it does not
   /// slide, and stays elsewhere than at an end of the line.

@@ -176,7 +176,6 @@ void go_around(Mesh& mesh, const VertexFaces& around, const std::function<Vec3(I
                Chords& chords, Rails& rails) {
   for (Chain& chain : find_chains(chords)) {
     if (!chain.is_closed() || !rails.slides(chain.vertices.front())) continue;
-    if (!(chords.length(chain.line) > 0)) continue;  // all of it is one place
     const bool good = find_stops(chain, chords) && goes_around(chain, chords.length(chain.line));
     Spread spread(mesh, chords, rails, chain);
     if (!good && !spread.put_in_order()) {

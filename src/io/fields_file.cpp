@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "graph/cloud_normals.h"
 #include "io/formats.h"
 #include "io/input.h"
 #include "io/output.h"
@@ -164,9 +165,10 @@ Fields read_fields(const std::filesystem::path& path, const Context& context) {
   if (!surface.is_point_cloud() && surface.faces.uniform_degree() != 3) {
     surface = triangulate(surface);
   }
-  if (surface.normals.empty()) {
-    surface.normals = surface.is_point_cloud() ? estimate_normals(surface, 16, context)
-                                               : vertex_normals(surface, -1, context);
+  if (surface.is_point_cloud()) {
+    surface.normals = cloud_normals(surface, 16, context);
+  } else if (surface.normals.empty()) {
+    surface.normals = vertex_normals(surface, -1, context);
   }
   context.progress("read", 1);
   return fields;

@@ -4,15 +4,14 @@
 #include <array>
 #include <vector>
 
-#include "mesh/border.h"
 #include "mesh/weld.h"
 
 namespace meshgrain {
 
-SeamReport find_seams(const Mesh& mesh, const Context& context) {
+SeamReport find_seams(const Mesh& mesh, std::span<const std::array<Index, 2>> border) {
   DistinctPositions distinct;
   std::vector<std::array<Index, 2>> edges;  // between places, as their faces run
-  for (const auto& [a, b] : border_edges(mesh, context)) {
+  for (const auto& [a, b] : border) {
     const Index from = distinct.add(mesh.positions[a]), to = distinct.add(mesh.positions[b]);
     if (from != to) edges.push_back({from, to});
   }

@@ -1,8 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <span>
 
-#include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
 
 namespace meshgrain {
@@ -14,7 +15,8 @@ struct SeamReport {
   std::size_t seam_edges = 0;
 };
 
-/// The edges of the border, and which of them would go if vertices at one place were merged.
-SeamReport find_seams(const Mesh& mesh, const Context& context);
+/// Of the edges of the border, which are given, those that would go if vertices at one place were
+/// merged.
+SeamReport find_seams(const Mesh& mesh, std::span<const std::array<Index, 2>> border);
 
 }  // namespace meshgrain

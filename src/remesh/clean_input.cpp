@@ -17,8 +17,9 @@ std::vector<std::string> clean_input(Mesh& input, const Context& context) {
   return notes;
 }
 
-std::vector<std::string> contract_border_of(Mesh& input, const Context& context) {
-  const std::size_t merged = contract_border(input, context);
+std::vector<std::string> contract_border_of(Mesh& input, std::vector<std::array<Index, 2>>& border,
+                                            const Context& context) {
+  const std::size_t merged = contract_border(input, border, context);
   if (merged == 0) return {};
   return {"merged " + std::to_string(merged) +
           " vertices of the border into others, as edges between them have no length"};

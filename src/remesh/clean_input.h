@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,8 @@ namespace meshgrain {
 /// is_torn()). Returns a line for each kind of what was done.
 std::vector<std::string> clean_input(Mesh& input, const Context& context);
 
-/// contract_border(), once it is a mesh that may have a border. Returns notes, too.
-std::vector<std::string> contract_border_of(Mesh& input, const Context& context);
+/// contract_border(), with a line about it if there was anything to do.
+std::vector<std::string> contract_border_of(Mesh& input, std::vector<std::array<Index, 2>>& border,
+                                            const Context& context);
 
 }  // namespace meshgrain

@@ -50,8 +50,9 @@ void Pipeline::clean_up(Mesh input) {
     const OrientReport oriented = orient_faces(surface_, context_);
     add_notes(describe(oriented));
     if (!is_cloud_ && oriented.may_have_border) {
-      add_notes(contract_border_of(surface_, context_));
-      add_notes(describe(find_seams(surface_, context_)));
+      auto border = border_edges(surface_, context_);
+      add_notes(contract_border_of(surface_, border, context_));
+      add_notes(describe(find_seams(surface_, border)));
     }
     drop_pieces();
   });

@@ -123,6 +123,10 @@ double Target::count_ratio(const Mesh& mesh) const {
   const std::size_t faces = split ? corners : mesh.faces.size();
   const std::size_t vertices =
       mesh.positions.size() + (split ? mesh.faces.size() + edges_of(mesh).size() : 0);
+  return ratio(faces, vertices);
+}
+
+double Target::ratio(std::size_t faces, std::size_t vertices) const {
   if (faces_ > 0) return static_cast<double>(faces) / faces_;
   if (vertices_ > 0) return static_cast<double>(vertices) / vertices_;
   return 1;
@@ -148,9 +152,7 @@ std::size_t Target::missing_quads(const Mesh& mesh) const {
 }
 
 double Target::finished_ratio(const Mesh& mesh) const {
-  if (faces_ > 0) return static_cast<double>(mesh.faces.size()) / faces_;
-  if (vertices_ > 0) return static_cast<double>(mesh.positions.size()) / vertices_;
-  return 1;
+  return ratio(mesh.faces.size(), mesh.positions.size());
 }
 
 std::size_t Target::spare_faces(const Mesh& mesh) const {

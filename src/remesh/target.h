@@ -86,6 +86,8 @@ class Target {
   std::size_t spare_faces(const Mesh& mesh) const;
 
  private:
+  double ratio(std::size_t faces, std::size_t vertices) const;
+
   double cells_ = 0;      // wanted squares, or pairs of triangles; 0: by length
   double length_ = 0;     // wanted lattice edge length, if by length
   double cell_area_ = 1;  // in squared edge lengths

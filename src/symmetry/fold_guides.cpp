@@ -14,6 +14,7 @@ class Folding {
       : axis_(plane.axis), offset_(plane.offset), out_(out) {}
 
   void fold(const Guide& guide) {
+    if (guide.points.empty()) return;
     std::vector<Point> points = with_crossings(guide);
     if (guide.closed) {
       // Open at the first crossing, if there is any.

@@ -37,16 +37,16 @@ PlaneSearch::PlaneSearch(const Mesh& mesh, const Context& context)
 MirrorPlane PlaneSearch::measure(int axis, double offset, const Context& context) const {
   // Where it is far a few samples tell.
   constexpr std::size_t few = 8;
-  constexpr double far = 0.02;
+  constexpr double large = 0.02;
   const MirrorPlane rough = measure(axis, offset, few, context);
-  return rough.mismatch > far ? rough : measure(axis, offset, 1, context);
+  return rough.mismatch > large ? rough : measure(axis, offset, 1, context);
 }
 
 /// By every so manieth sample.
 MirrorPlane PlaneSearch::measure(int axis, double offset, std::size_t step,
                                  const Context& context) const {
   constexpr std::size_t grain = 256;
-  constexpr double far = 0.02;
+  constexpr double far = 0.02;  // see MirrorPlane::unlike
   const double diagonal = box_.diagonal().cast<double>().norm();
   const std::size_t count = (samples_.size() + step - 1) / step;
   std::vector<double> distances(count);  // over the diagonal

@@ -89,7 +89,8 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const RemeshHal
   if (options.faces == OutputFaces::hexagons) throw Error("hexagons cannot be made symmetric");
   const std::size_t vertices = input.positions.size(), faces = input.faces.size();
   std::vector<std::string> notes = clean_input(input, context);
-  for (const std::string& note : contract_border_of(input, context)) notes.push_back(note);
+  auto border = border_edges(input, context);
+  for (auto& note : contract_border_of(input, border, context)) notes.push_back(std::move(note));
   if (!(surface_area(input, context) > 0)) {
     throw Error("the input has no surface: all of its faces are degenerate");
   }

@@ -58,11 +58,11 @@ bool is_stream(const std::filesystem::path& path);
 /// system. Throws std::filesystem::filesystem_error.
 void replace_file(const std::filesystem::path& from, const std::filesystem::path& to);
 
-/// A path in the folder of `path` where nothing is yet, and which nobody else is likely to choose.
+/// A path in the folder of `path` that nobody else is likely to choose.
 std::filesystem::path temporary_beside(const std::filesystem::path& path);
 
-/// Makes an empty file there, where none was before, whoever else writes into that folder: other
-/// containers or machines, too. Throws std::system_error.
+/// Makes an empty file at such a path, where none was: for this caller alone, even if other
+/// containers or machines write into the folder. Throws std::system_error.
 std::filesystem::path make_file_beside(const std::filesystem::path& path);
 
 }  // namespace meshgrain::platform
