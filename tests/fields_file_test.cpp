@@ -205,6 +205,22 @@ TEST(GivenFields, MustFitWhatIsAskedFor) {
   EXPECT_TRUE(is_refused(fields));
 }
 
+TEST(GivenFields, OfAnotherSurfaceAreSaidToBe) {
+  RemeshOptions options;
+  options.face_count = 200;
+  const Fields fields = remesh(sample_shape("sphere", 1), options).fields;
+  options.fields = &fields;
+  const auto note = [&](const Mesh& mesh) {
+    const auto notes = remesh(mesh, options).report.notes;
+    return std::ranges::count_if(notes, [](const std::string& n) {
+      return n.starts_with("the given fields are of another");
+    });
+  };
+  EXPECT_EQ(note(sample_shape("sphere", 0.5)), 0);
+  EXPECT_EQ(note(sample_shape("sphere", 2)), 0);  // finer or coarser makes no difference
+  EXPECT_EQ(note(sample_shape("torus", 0.5)), 1);
+}
+
 TEST_F(FieldsFile, RefusesToWriteWhatDoesNotFit) {
   Fields fields = sample();
   fields.orientation.directions.pop_back();

@@ -11,16 +11,21 @@
 namespace meshgrain {
 namespace {
 
-/// For each node, the nearest vertex of the fields' surface.
-std::vector<Index> nearest_vertices(const Fields& fields, const Graph& graph, const Frame& frame,
-                                    const Context& context) {
+/// The vertices of the fields' surface.
+std::vector<Vec3> points_of(const Fields& fields, const Frame& frame) {
   std::vector<Vec3> points;
   points.reserve(fields.surface.positions.size());
   for (const Vec3& p : fields.surface.positions) {
     points.push_back(frame.inside(p.cast<double>() + fields.surface.origin).cast<float>());
   }
   if (points.empty()) throw Error("the given fields have no values");
-  return nearest_points(points, graph.positions, context);
+  return points;
+}
+
+/// For each node, the nearest vertex of the fields' surface.
+std::vector<Index> nearest_vertices(const Fields& fields, const Graph& graph, const Frame& frame,
+                                    const Context& context) {
+  return nearest_points(points_of(fields, frame), graph.positions, context);
 }
 
 OrientationField orientation_of(const Fields& fields, const Graph& graph,
@@ -65,6 +70,25 @@ PositionField transfer_position(const Fields& fields, const Graph& graph, const 
     }
   });
   return result;
+}
+
+bool is_of_another_surface(const Fields& fields, const Graph& graph, const Frame& frame,
+                           const Context& context) {
+  constexpr double far = 0.01;  // of the unit
+  const std::vector<Vec3> points = points_of(fields, frame);
+  const auto nearest = nearest_points(points, graph.positions, context);
+  double distance = 0;
+  for (std::size_t i = 0; i < graph.size(); ++i) {
+    distance += (graph.positions[i] - points[nearest[i]]).norm();
+  }
+  distance /= static_cast<double>(graph.size());
+  if (distance <= far) return false;
+  const Neighborhoods neighbors = nearest_neighbors(points, 1, context);
+  double spacing = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (const Index j : neighbors[i]) spacing += (points[i] - points[j]).norm();
+  }
+  return distance > spacing / static_cast<double>(points.size());
 }
 
 }  // namespace meshgrain

@@ -11,4 +11,9 @@ OrientationField transfer_orientation(const Fields& fields, const Graph& graph, 
 PositionField transfer_position(const Fields& fields, const Graph& graph, const Frame& frame,
                                 const Context& context);
 
+/// Whether the fields' surface is another one: in the mean, nodes lie farther from its vertices
+/// than a hundredth of the frame's unit, and than these do from each other.
+bool is_of_another_surface(const Fields& fields, const Graph& graph, const Frame& frame,
+                           const Context& context);
+
 }  // namespace meshgrain

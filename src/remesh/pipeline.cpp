@@ -229,6 +229,11 @@ void Pipeline::orient() {
   stage_("orientation field", [&] {
     if (options_.fields != nullptr) {
       fields().orientation = transfer_orientation(*options_.fields, graph(), frame_, context_);
+      if (is_of_another_surface(*options_.fields, graph(), frame_, context_)) {
+        result_.report.notes.emplace_back(
+            "the given fields are of another surface: each value comes from the nearest of its "
+            "vertices, which is far away");
+      }
       return;
     }
     OrientationOptions orientation;
