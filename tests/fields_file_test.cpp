@@ -74,6 +74,7 @@ void expect_same(const Fields& a, const Fields& b) {
   EXPECT_EQ(a.position.points, b.position.points);
   if (a.position.points.empty()) return;
   EXPECT_EQ(a.position.posy, b.position.posy);
+  EXPECT_EQ(a.fine_lattice, b.fine_lattice);
   EXPECT_EQ(a.position.edge_length.values, b.position.edge_length.values);
 }
 
@@ -83,6 +84,9 @@ TEST_F(FieldsFile, KeepsEveryBit) {
   fields.orientation.rosy = 2;
   fields.position.posy = 6;
   expect_same(round_trip(fields), fields);
+  fields.fine_lattice = true;
+  expect_same(round_trip(fields), fields);
+  fields.fine_lattice = false;
   fields.position.edge_length.values.assign(fields.surface.positions.size(), 0.1f);
   fields.position.edge_length.values[3] = 0.7f;
   expect_same(round_trip(fields), fields);
@@ -203,6 +207,20 @@ TEST(GivenFields, MustFitWhatIsAskedFor) {
   fields = made;
   fields.orientation.directions.pop_back();
   EXPECT_TRUE(is_refused(fields));
+}
+
+TEST(GivenFields, DecideHowFineTheMeshIs) {
+  for (const std::size_t count : {300u, 3000u}) {  // the lattices are a fine and a coarse one
+    RemeshOptions options;
+    options.face_count = count;
+    const RemeshResult made = remesh(sample_shape("bracket"), options);
+    EXPECT_EQ(made.fields.fine_lattice, count < 1000);
+    options.face_count = 0;
+    options.fields = &made.fields;
+    const Mesh again = remesh(sample_shape("bracket"), options).mesh;
+    EXPECT_NEAR(static_cast<double>(again.faces.size()), static_cast<double>(count),
+                0.05 * static_cast<double>(count));
+  }
 }
 
 TEST(GivenFields, OfAnotherSurfaceAreSaidToBe) {

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "finish/crossings.h"
 #include "mesh/border.h"
 #include "meshgrain/clean.h"
 #include "meshgrain/error.h"
@@ -171,6 +172,42 @@ TEST(LockBorders, AnOddBorderTakesOneTriangle) {
 }
 
 /// Where three sheets meet in an edge, and two in a vertex, they still do.
+/// An L of a single polygon, whose border has edges of up to 70 faces: those that meet them would
+/// pass through each other.
+TEST(LockBorders, EdgesFarLongerThanFacesAreDividedWhereTheyMustBe) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {4, 0, 0}, {4, 1, 0}, {1, 1, 0}, {1, 4, 0}, {0, 4, 0}};
+  mesh.faces.push_back({0, 1, 2, 3, 4, 5});
+  RemeshOptions options;
+  options.face_count = 600;
+  options.lock_borders = true;
+  const RemeshResult result = remesh(mesh, options);
+  const MeshStatistics after = mesh_statistics(result.mesh);
+  made::expect_same_topology(after, mesh_statistics(mesh));
+  EXPECT_EQ(after.inverted_quads, 0u);
+  EXPECT_EQ(after.quads, after.faces);
+  EXPECT_TRUE(find_crossings(result.mesh, Context()).empty());
+  EXPECT_EQ(std::ranges::count_if(
+                result.report.notes,
+                [](const std::string& note) { return note.starts_with("divided edges"); }),
+            1);
+  // Corners are where they were, and what came between lies on the border.
+  for (const Vec3& corner : mesh.positions) {
+    EXPECT_NE(std::ranges::find(result.mesh.positions, corner), result.mesh.positions.end());
+  }
+  const auto lies_on = [](const Vec3& p, const Vec3& a, const Vec3& b) {
+    return std::abs((p - a).norm() + (b - p).norm() - (b - a).norm()) < 1e-5f;
+  };
+  for (const auto& edge : border_edges(result.mesh)) {
+    const Vec3& p = result.mesh.positions[edge[0]];
+    bool any = false;
+    for (std::size_t k = 0; k < 6; ++k) {
+      any = any || lies_on(p, mesh.positions[k], mesh.positions[(k + 1) % 6]);
+    }
+    EXPECT_TRUE(any) << p.transpose();
+  }
+}
+
 TEST(LockBorders, SheetsThatMeetGoOnToMeet) {
   Mesh mesh = sample_shape("plate", 0.3);
   const std::size_t count = mesh.positions.size();

@@ -237,7 +237,8 @@ void add_options(CLI::App& app, Arguments& a) {
       "--free-boundaries", [&o] { o.features.align_border = false; }, "do not follow it"));
   follow(app.add_flag("--lock-borders", o.lock_borders,
                       "the border's vertices stay exactly where they are, and its edges as they "
-                      "are, so that the result can be sewn to what lay beside the input"));
+                      "are, so that the result can be sewn to what lay beside the input (only "
+                      "where faces would be folded, edges far longer than these are divided)"));
   follow(app.add_option_function<std::string>(
                 "--symmetry", [&o](const std::string& text) { parse_symmetry(text, o.symmetry); },
                 "exactly symmetric about planes across x, y, z (xy: both), or auto: about the one "

@@ -41,6 +41,9 @@ struct Fields {
   Mesh surface;  ///< The triangle mesh or point cloud whose vertices are the nodes, with normals.
   OrientationField orientation;
   PositionField position;
+  /// Of pure quads: whether their edges are as long as the lattice's (RemeshOptions::fine_lattice),
+  /// not half as long.
+  bool fine_lattice = false;
 };
 
 enum class OrientationEnergy {

@@ -16,6 +16,7 @@ namespace meshgrain {
 ///     comment rosy 4
 ///     comment posy 4
 ///     comment edge_length 0.0123
+///     comment fine_lattice 1        (if it is)
 ///
 /// The file appears whole or not at all. Throws Error if the fields do not have one value a vertex,
 /// or if the place cannot be written.

@@ -61,7 +61,8 @@ struct RemeshOptions {
   int smoothing = 32;     ///< Iterations of smooth() (0: only put onto the surface).
   bool manifold = false;  ///< Drop what is not manifold.
   /// Of meshes: the border's vertices stay exactly where they are, and its edges as they are, so
-  /// that the result can be sewn to what lay beside the input.
+  /// that the result can be sewn to what lay beside the input. Edges more than two faces long are
+  /// divided, with a note, where faces that meet them would be inverted or pass through each other.
   bool lock_borders = false;
   /// Leave out pieces of a mesh that have room for fewer faces than this. Others come back coarse,
   /// but closed where they were.

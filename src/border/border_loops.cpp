@@ -1,6 +1,9 @@
 #include "border/border_loops.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
 
 #include "extract/polygon_map.h"
 #include "mesh/border.h"
@@ -74,6 +77,50 @@ BorderLoops find_border_loops(const Mesh& surface, std::span<const std::uint8_t>
     }
   }
   std::ranges::stable_sort(result.places, {}, &BorderLoops::Place::vertex);
+  return result;
+}
+
+std::vector<std::uint8_t> locked_between(const BorderLoops& borders, const Mesh& surface,
+                                         std::span<const std::uint8_t> locked, double side) {
+  constexpr double far = 2;  // sides
+  std::vector<std::uint8_t> result(locked.begin(), locked.end());
+  for (const BorderLoop& loop : borders.loops) {
+    const std::size_t count = loop.vertices.size();
+    // Of each edge between locked vertices, the length.
+    std::vector<double> lengths(loop.locked.size(), 0);
+    for (std::size_t k = 0; k < count; ++k) {
+      const Vec3& p = surface.positions[loop.vertices[k]];
+      const Vec3& q = surface.positions[loop.vertices[(k + 1) % count]];
+      lengths[static_cast<std::size_t>(loop.places[k])] += (q - p).norm();
+    }
+    std::vector<std::size_t> parts(lengths.size(), 1);
+    for (std::size_t e = 0; e < lengths.size(); ++e) {
+      if (lengths[e] > far * side) parts[e] = static_cast<std::size_t>(lengths[e] / side + 0.5);
+    }
+    const auto longest = std::ranges::max_element(lengths) - lengths.begin();
+    if (parts[longest] == 1) continue;
+    parts[longest] += std::accumulate(parts.begin(), parts.end(), std::size_t{0}) % 2;
+    // Of all vertices between two locked ones, the nearest to where each part begins.
+    struct Nearest {
+      double off = 0.5;  // parts
+      Index vertex = no_index;
+    };
+    std::vector<std::size_t> first(parts.size(), 0);
+    std::exclusive_scan(parts.begin(), parts.end(), first.begin(), std::size_t{0});
+    std::vector<Nearest> nearest(first.back() + parts.back());
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto edge = static_cast<std::size_t>(loop.places[k]);
+      const double at =
+          (loop.places[k] - static_cast<double>(edge)) * static_cast<double>(parts[edge]);
+      const double part = std::round(at), off = std::abs(at - part);
+      if (part >= static_cast<double>(parts[edge])) continue;  // that is the next locked one
+      Nearest& best = nearest[first[edge] + static_cast<std::size_t>(part)];
+      if (off < best.off) best = {off, loop.vertices[k]};
+    }
+    for (const Nearest& best : nearest) {
+      if (best.vertex != no_index) result[best.vertex] = 1;
+    }
+  }
   return result;
 }
 

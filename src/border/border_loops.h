@@ -38,4 +38,9 @@ std::vector<std::uint8_t> rim_vertices(const Mesh& mesh, const Context& context)
 BorderLoops find_border_loops(const Mesh& surface, std::span<const std::uint8_t> locked,
                               const Context& context);
 
+/// `locked`, and between those that are far from each other along a border others, about `side`
+/// apart: an even number of them on each border, if possible, as quads need.
+std::vector<std::uint8_t> locked_between(const BorderLoops& borders, const Mesh& surface,
+                                         std::span<const std::uint8_t> locked, double side);
+
 }  // namespace meshgrain

@@ -89,6 +89,7 @@ void write_fields(const std::filesystem::path& path, const Fields& fields) {
                                     fmt::format("rosy {}", fields.orientation.rosy)};
   if (has_positions) {
     comments.push_back(fmt::format("posy {}", position.posy));
+    if (fields.fine_lattice) comments.emplace_back("fine_lattice 1");
     if (!per_node) comments.push_back(fmt::format("edge_length {}", position.edge_length[0]));
   }
   std::vector<io::ply::Attribute> attributes;
@@ -145,6 +146,7 @@ Fields read_fields(const std::filesystem::path& path, const Context& context) {
     PositionField& position = fields.position;
     position.posy = symmetry_in(comments, "posy", {4, 6}, input);
     position.points = vectors(&columns[3], surface.origin);
+    fields.fine_lattice = number_in(comments, "fine_lattice", input) == 1;
     const auto uniform = number_in(comments, "edge_length", input);
     if (columns[6].found) {
       const auto& lengths = columns[6].numbers;

@@ -65,6 +65,13 @@ void Pipeline::drop_coarse_levels() {
   hierarchy_.colorings = {};
 }
 
+void Pipeline::find_borders() {
+  borders_ = find_border_loops(surface_, locked_, context_);
+  if (!divides_borders_) return;
+  const auto locked = locked_between(borders_, surface_, locked_, target_.face_side(area_));
+  borders_ = find_border_loops(surface_, locked, context_);
+}
+
 void Pipeline::find_lines() {
   area_ = 0;
   for (const float a : graph().areas) area_ += a;
@@ -74,7 +81,7 @@ void Pipeline::find_lines() {
   }
   constraints_ = guide_constraints(graph(), soft_guides_);
   if (is_cloud_ || !nodes_are_vertices_) return;
-  if (options_.lock_borders) borders_ = find_border_loops(surface_, locked_, context_);
+  if (options_.lock_borders) find_borders();
   stage_("features", [&] {
     FeatureOptions options = feature_options();
     if (options_.orientation_energy != OrientationEnergy::extrinsic) options.orient_creases = 1;
@@ -104,7 +111,16 @@ bool Pipeline::may_have_fine_lattice() const {
          borders_.empty();
 }
 
+bool Pipeline::has_given_fine_lattice() const {
+  return options_.faces == OutputFaces::quads && !is_cloud_ && nodes_are_vertices_ &&
+         has_given_positions(options_) && options_.fields->fine_lattice && borders_.empty();
+}
+
 bool Pipeline::choose_lattice() {
+  if (has_given_fine_lattice()) {
+    aim_at(OutputFaces::quad_dominant);
+    return true;
+  }
   if (!may_have_fine_lattice()) return false;
   // A cell of the coarse lattice is two faces wide. Which shares was measured.
   const double side = target_.face_side(area_);
@@ -312,6 +328,7 @@ void Pipeline::aim_at(OutputFaces lattice_faces) {
 
 void Pipeline::change_target(const RemeshOptions& options) {
   const bool left_out_creases = std::exchange(leaves_out_creases_, false);
+  divides_borders_ = false;
   const bool started_elsewhere = std::exchange(other_start_, 0) != 0;
   wanted_ = options;
   aim_at(options.faces);
@@ -342,6 +359,7 @@ RemeshResult Pipeline::result() && {
   }
   fields().surface = std::move(surface_);
   fields().surface.normals = graph().normals;
+  fields().fine_lattice = lattice_faces_ != options_.faces;
   leave(frame_, fields());
   result_.mesh = std::move(extraction_.mesh);
   leave(frame_, result_.mesh);

@@ -130,6 +130,8 @@ class Pipeline {
     std::vector<EnergyRecord> orientation_energies;
     std::uint64_t other_start;
     bool leaves_out_creases;
+    bool divides_borders;
+    BorderLoops borders;
     FeatureLines features;
     FeatureConstraints constraints;
     OutputFaces lattice_faces;
@@ -156,6 +158,8 @@ class Pipeline {
   double share_of_holes() const;  // of the faces wanted
   /// The lattice may be as fine as the quads.
   bool may_have_fine_lattice() const;
+  /// It must: given positions are for one.
+  bool has_given_fine_lattice() const;
   /// Among more faces holes and ends are little to see, for twice the time and the memory.
   bool has_few_faces() const;
   /// Edges between more than two faces: all of these would have to get the same new vertices.
@@ -179,6 +183,9 @@ class Pipeline {
   /// steps of a surface around voxels, or parts that are thinner than a face. Returns whether that
   /// is better.
   bool try_without_creases(const Flaws& before);
+  /// What there is with borders that stay divided into edges as long as faces, where faces that
+  /// meet far longer ones are folded. Returns whether that is better.
+  bool try_divided_borders(const Flaws& before);
   /// Until none are left of the flaws that there were `before`.
   void try_other_starts(Flaws before);
   /// Irregular vertices may be the price: not for those who want fewer of them than by default.
@@ -189,6 +196,8 @@ class Pipeline {
   /// Those longer than the target allows. Returns whether there are any.
   bool split_long_edges(double area, const EdgeLengths& edges);
 
+  /// Those that stay.
+  void find_borders();
   /// Guides onto the surface: those that edges must follow are cut into it.
   void lay_guides(double edge_length);
   void append(const FeatureConstraints& more);
@@ -261,6 +270,7 @@ class Pipeline {
   GuideLines guides_;                  // that edges follow
   std::vector<GuideRun> soft_guides_;  // that fields are drawn to
   bool leaves_out_creases_ = false;
+  bool divides_borders_ = false;
   FeatureLines features_;
   FeatureConstraints constraints_;
   std::vector<std::uint8_t> keeps_singularities_;  // the lattice; see ExtractOptions

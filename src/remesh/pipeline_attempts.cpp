@@ -165,11 +165,27 @@ bool Pipeline::try_without_creases(const Flaws& before) {
   return true;
 }
 
+bool Pipeline::try_divided_borders(const Flaws& before) {
+  if (borders_.empty() || divides_borders_ || before.faults == 0) return false;
+  const auto locked = locked_between(borders_, surface_, locked_, target_.face_side(area_));
+  if (locked == locked_) return false;
+  const auto is_better = [&] { return 2 * flaws(0).faults <= before.faults; };
+  const auto divide = [&] {
+    divides_borders_ = true;
+    find_lines();
+  };
+  if (!try_again(is_better, divide)) return false;
+  result_.report.notes.emplace_back(
+      "divided edges of the border that are far longer than a face: faces that meet them as they "
+      "are would be folded or pass through each other");
+  return true;
+}
+
 bool Pipeline::mend_flaws() {
   if (!may_make_others()) return false;
   LostSurface lost = lost_surface();
   Flaws left = flaws(lost.faces);
-  if (try_without_creases(left)) {
+  if (try_divided_borders(left) || try_without_creases(left)) {
     lost = lost_surface();
     left = flaws(lost.faces);
   }
@@ -213,7 +229,7 @@ void Pipeline::try_other_starts(Flaws before) {
 }
 
 void Pipeline::try_coarser_lattice() {
-  if (lattice_faces_ == options_.faces) return;
+  if (lattice_faces_ == options_.faces || has_given_positions(options_)) return;
   constexpr double hopeless = 0.2;
   if (inverted_faces() == 0 || share_of_holes() > hopeless) return;
   const std::size_t before = faults();
@@ -266,6 +282,8 @@ Pipeline::Attempt Pipeline::take_attempt() {
           report.orientation_energies,
           other_start_,
           leaves_out_creases_,
+          divides_borders_,
+          borders_,
           features_,
           constraints_,
           lattice_faces_,
@@ -283,6 +301,8 @@ void Pipeline::put_back(Attempt&& attempt) {
   result_.report.orientation_energies = std::move(attempt.orientation_energies);
   other_start_ = attempt.other_start;
   leaves_out_creases_ = attempt.leaves_out_creases;
+  divides_borders_ = attempt.divides_borders;
+  borders_ = std::move(attempt.borders);
   features_ = std::move(attempt.features);
   constraints_ = std::move(attempt.constraints);
   lattice_faces_ = attempt.lattice_faces;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 #include "mesh/edges.h"
 
@@ -29,6 +31,10 @@ Target::Target(const RemeshOptions& options, OutputFaces lattice_faces, std::siz
   } else if (options.face_count > 0) {
     faces_ = static_cast<double>(options.face_count);
     cells_ = faces_ / faces_per_cell_;
+  } else if (options.vertex_count == 0 && has_given_positions(options)) {
+    const std::vector<float>& lengths = options.fields->position.edge_length.values;
+    const double sum = std::accumulate(lengths.begin(), lengths.end(), 0.0);
+    length_ = sum / static_cast<double>(lengths.size()) / scale;
   } else {
     is_asked_for_ = options.vertex_count > 0;
     const auto input = static_cast<double>(input_vertices);

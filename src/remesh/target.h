@@ -21,6 +21,7 @@ class Target {
  public:
   Target() = default;
   /// `lattice_faces`: what the cells of the lattice become; for OutputFaces::quads each is four.
+  /// Where nothing is asked for, given positions say how fine they are.
   /// `scale`: input units a unit of the surface.
   Target(const RemeshOptions& options, OutputFaces lattice_faces, std::size_t input_vertices,
          double scale);
