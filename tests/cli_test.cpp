@@ -540,6 +540,7 @@ TEST_F(Cli, SeveralSizesInOneRun) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out.v1.ply"));
   expect_refused("in.obj -o out.obj --lod 500,x", 2, "--lod");
   expect_refused("in.obj -o out.obj --lod 500,0", 2, "--lod");
+  expect_refused("in.obj -o out.obj --lod -5", 2, "--lod");
   expect_refused("in.obj -o out.obj --lod 500 -f 100", 2, "--lod");
   expect_refused("in.obj -o out.obj --lod 500 --fields-out f.ply", 2, "--lod");
   expect_refused("in.obj -o out.obj --lod 500,50 --symmetry x", 1, "symmetric");

@@ -160,6 +160,14 @@ TEST_F(MarkedEdges, MaterialsOfObj) {
   // Faces before the first material have none.
   EXPECT_EQ(sorted(read("b.obj", vertices + lower_faces + "usemtl a\n" + upper_faces).marked_edges),
             loop);
+  // A comment needs a blank before it: names may have the sign within.
+  EXPECT_EQ(sorted(read("d.obj", vertices + "usemtl m#1\n" + lower_faces + "usemtl m#2 # two\n" +
+                                     upper_faces)
+                       .marked_edges),
+            loop);
+  EXPECT_TRUE(
+      read("e.obj", vertices + "usemtl m#2\n" + lower_faces + "usemtl m#2 # two\n" + upper_faces)
+          .marked_edges.empty());
   EXPECT_TRUE(read("c.obj", vertices + "usemtl a\n" + lower_faces + "usemtl a\n" + upper_faces)
                   .marked_edges.empty());
 }

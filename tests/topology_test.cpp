@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -115,6 +116,48 @@ TEST(Topology, HolesThatTouchDoNotBecomeOne) {
     const MeshStatistics after = mesh_statistics(remesh(input, options).mesh);
     EXPECT_EQ(after.non_manifold_edges, 0u);
     EXPECT_EQ(after.boundary_loops, before.boundary_loops);
+  }
+}
+
+/// Two cubes that share an edge: whatever vertices each has along it, the other gets them too.
+TEST(Topology, PiecesThatMeetAlongAnEdgeLeaveNoCrack) {
+  Mesh input;
+  for (const float at : {-1.0f, 0.0f}) {
+    std::vector<Index> corners;
+    for (const float z : {0.0f, 1.0f}) {
+      for (const float y : {at, at + 1}) {
+        for (const float x : {at, at + 1}) {
+          const Vec3 p(x, y, z);
+          const auto it = std::ranges::find(input.positions, p);
+          corners.push_back(static_cast<Index>(it - input.positions.begin()));
+          if (it == input.positions.end()) input.positions.push_back(p);
+        }
+      }
+    }
+    for (const std::array<std::size_t, 4>& side : {std::array<std::size_t, 4>{0, 2, 3, 1},
+                                                   {4, 5, 7, 6},
+                                                   {0, 1, 5, 4},
+                                                   {2, 6, 7, 3},
+                                                   {0, 4, 6, 2},
+                                                   {1, 3, 7, 5}}) {
+      input.faces.push_back(
+          {corners[side[0]], corners[side[1]], corners[side[2]], corners[side[3]]});
+    }
+  }
+  ASSERT_EQ(mesh_statistics(input).boundary_loops, 0u);
+  ASSERT_EQ(mesh_statistics(input).non_manifold_edges, 1u);
+  for (const OutputFaces faces :
+       {OutputFaces::quads, OutputFaces::quad_dominant, OutputFaces::triangles}) {
+    for (const std::size_t count : {500, 1500, 2000}) {
+      SCOPED_TRACE(std::to_string(static_cast<int>(faces)) + " " + std::to_string(count));
+      RemeshOptions options;
+      options.faces = faces;
+      options.face_count = count;
+      const MeshStatistics after = mesh_statistics(remesh(input, options).mesh);
+      EXPECT_EQ(after.boundary_loops, 0u);
+      EXPECT_GE(after.non_manifold_edges, 3u);
+      EXPECT_EQ(after.inverted_quads, 0u);
+    }
   }
 }
 

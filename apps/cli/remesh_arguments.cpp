@@ -104,7 +104,8 @@ std::size_t parse_memory(const std::string& text) {
 void parse_levels(const std::string& text, std::vector<std::size_t>& levels) {
   for (const std::string& word : CLI::detail::split(text, ',')) {
     std::size_t count = 0;
-    if (!CLI::detail::lexical_cast(word, count) || count == 0) {
+    const bool is_signed = word.find('-') != word.npos;
+    if (is_signed || !CLI::detail::lexical_cast(word, count) || count == 0) {
       throw CLI::ValidationError("--lod", "\"" + word + "\" is no number of faces");
     }
     levels.push_back(count);
@@ -359,7 +360,7 @@ void parse_sizing(Arguments& a) {
     sizing.kind = Sizing::Kind::values;
     a.read.value_name = rest;
   } else if (a.sizing == "curvature") {
-    sizing.adaptive = 1;
+    if (sizing.adaptive == 0) sizing.adaptive = 1;
   } else if (a.sizing != "uniform") {
     throw UsageError("--sizing \"" + a.sizing +
                      "\" is none of uniform, curvature, distance:X,Y,Z, value:NAME");

@@ -123,7 +123,8 @@ Json to_json(const RemeshOptions& o) {
                {"smooth", o.smoothing},
                {"regularity", o.regularity},
                {"min_component", o.min_component},
-               {"manifold", o.manifold}};
+               {"manifold", o.manifold},
+               {"lock_borders", o.lock_borders}};
   if (o.sizing.kind == Sizing::Kind::distance) {
     const auto& p = o.sizing.point;
     json["sizing_point"] = {p.x(), p.y(), p.z()};

@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "extract/close_cracks.h"
 #include "extract/drop_unused.h"
 #include "mesh/vertex_faces.h"
 #include "util/sort_unique.h"
@@ -88,7 +89,7 @@ class Joining {
 }  // namespace
 
 void join_pieces(Extraction& extraction, std::vector<CollapsedMesh::Meeting> meetings,
-                 std::span<const Index> vertex, const Context& context) {
+                 std::span<const Index> vertex, std::size_t most_corners, const Context& context) {
   if (meetings.empty()) return;
   std::ranges::stable_sort(meetings, std::greater(), &CollapsedMesh::Meeting::count);
   Joining joining(extraction.mesh, context);
@@ -102,6 +103,9 @@ void join_pieces(Extraction& extraction, std::vector<CollapsedMesh::Meeting> mee
     edge = {sets.find(edge.a), sets.find(edge.b), edge.line};
   }
   for (Index& v : extraction.corners) v = sets.find(v);
+  if (std::ranges::any_of(meetings, &CollapsedMesh::Meeting::along_edge)) {
+    close_cracks(extraction, most_corners, context);
+  }
   drop_unused(extraction);
 }
 

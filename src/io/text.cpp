@@ -58,7 +58,8 @@ std::string_view Text::rest_of_line() {
   if (line_ends()) return {};
   const char* const begin = at_;
   const char* last = at_;  // behind the last character that is not blank
-  for (; at_ != end_ && *at_ != newline_ && *at_ != '#'; ++at_) {
+  for (; at_ != end_ && *at_ != newline_; ++at_) {
+    if (*at_ == '#' && last != at_) break;  // names may have it within
     if (!is_blank(*at_)) last = at_ + 1;
   }
   return {begin, last};

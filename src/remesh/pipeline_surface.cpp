@@ -1,5 +1,7 @@
 // The stages of the pipeline that make a surface ready for its graph.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -66,11 +68,11 @@ void Pipeline::drop_pieces() {
   if (is_cloud_ || options_.min_component == 0) return;
   const double area = options_.min_component * target_.face_area(surface_area(surface_, context_));
   if (const std::size_t dropped = drop_small_pieces(surface_, area)) {
-    const long least = std::lround(options_.min_component);
+    const double least = options_.min_component;
     result_.report.notes.push_back(
-        "left out " + std::to_string(dropped) +
-        (least == 1 ? " pieces smaller than a face"
-                    : " pieces with room for fewer than " + std::to_string(least) + " faces"));
+        fmt::format("left out {} {} ", dropped, dropped == 1 ? "piece" : "pieces") +
+        (least == 1 ? "smaller than a face"
+                    : fmt::format("with room for fewer than {:g} faces", least)));
   }
 }
 

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstddef>
+
+#include "meshgrain/extract.h"
+
+namespace meshgrain {
+
+/// Where pieces of a surface meet along an edge that is not manifold, each has a chain of edges
+/// along the same line, but with vertices that may differ. Makes those one that are close to each
+/// other, and gives edges that have none the vertices of the others beside them, so that no crack
+/// is left. Triangles stay triangles; other faces get no more corners than `most_corners`.
+void close_cracks(Extraction& extraction, std::size_t most_corners, const Context& context);
+
+}  // namespace meshgrain
