@@ -760,6 +760,25 @@ TEST_F(Io, StlTextIsWelded) {
   }
 }
 
+/// Vertices closer than single precision can tell from so far away.
+TEST_F(Io, StlTextMayBeFarAway) {
+  std::string text = " \nsolid\n";
+  constexpr int count = 8;
+  for (int k = 0; k < count; ++k) {
+    const auto vertex = [&](double x, double y) {
+      text += fmt::format("vertex {:.2f} {:.2f} 0\n", 5e6 + 0.05 * x, 5e6 + 0.05 * y);
+    };
+    text += "facet normal 0 0 1\nouter loop\n";
+    vertex(k, 0);
+    vertex(k + 1, 0);
+    vertex(k, 1);
+    text += "endloop\nendfacet\n";
+  }
+  const Mesh mesh = read("a.stl", text + "endsolid\n");
+  EXPECT_EQ(mesh.positions.size(), 2u * count + 1);
+  EXPECT_EQ(mesh.faces.size(), std::size_t{count});
+}
+
 TEST_F(Io, StlBinaryMayBeginWithSolid) {
   write_mesh(folder_ / "a.stl", sample());
   std::ifstream stream(folder_ / "a.stl", std::ios::binary);

@@ -222,6 +222,19 @@ TEST(SurfaceDistance, OfCloudsAndShiftedOrigins) {
   EXPECT_GE(surface_distance(sample_shape("plate"), one, 1, 1000).mean, 2);
 }
 
+/// A U of one polygon, which no fan from its first corner covers, and of three squares.
+TEST(SurfaceDistance, OfConcavePolygons) {
+  Mesh whole, parts;
+  whole.positions = {{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {2, 3, 0},
+                     {2, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}};
+  whole.faces.push_back({0, 1, 2, 3, 4, 5, 6, 7});
+  parts.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {0, 1, 0}, {1, 1, 0},
+                     {2, 1, 0}, {3, 1, 0}, {0, 3, 0}, {1, 3, 0}, {2, 3, 0}, {3, 3, 0}};
+  for (const Index at : {0, 1, 2, 4, 6}) parts.faces.push_back({at, at + 1, at + 5, at + 4});
+  EXPECT_LT(surface_distance(whole, parts, 1, 2000).max, 1e-6);
+  EXPECT_LT(surface_distance(parts, whole, 1, 2000).max, 1e-6);
+}
+
 TEST(SurfaceDistance, IsTheSameForAnyNumberOfThreads) {
   const Mesh a = sample_shape("blob"), b = sample_shape("sphere");
   const auto one = surface_distance(a, b, 1, 4000, Context(1));

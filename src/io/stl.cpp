@@ -37,6 +37,7 @@ bool has_binary_size(std::string_view bytes) {
 }
 
 bool begins_with_solid(std::string_view bytes) {
+  bytes.remove_prefix(std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size()));
   return bytes.starts_with("solid") && (bytes.size() == 5 || bytes[5] <= ' ');
 }
 
@@ -74,7 +75,9 @@ void read_binary(const Input& input, DistinctPositions& vertices, Faces& faces) 
   }
 }
 
-void read_text(const Input& input, DistinctPositions& vertices, Faces& faces) {
+/// Every face gets vertices of its own: which are the same is to be seen when they have lost what
+/// single precision cannot hold, but no more than that.
+void read_text(const Input& input, Coordinates& corners, Faces& faces) {
   Text text(input);
   std::vector<Index> face;
   bool in_solid = false;
@@ -87,7 +90,8 @@ void read_text(const Input& input, DistinctPositions& vertices, Faces& faces) {
         const double x = text.number("coordinate x");
         const double y = text.number("coordinate y");
         const double z = text.number("coordinate z");
-        face.push_back(vertices.add(Eigen::Vector3d(x, y, z).cast<float>()));
+        face.push_back(static_cast<Index>(corners.size()));
+        corners.push(x, y, z);
       } else if (text.word_is("endloop")) {
         text.advance(7);
         if (face.size() >= 3) faces.push_back(face);
@@ -116,16 +120,21 @@ bool is_stl(std::string_view bytes) {
 
 Mesh read_stl(const Input& input) {
   Mesh mesh;
+  Coordinates coordinates;
   DistinctPositions vertices;
-  if (!has_binary_size(input.bytes()) && looks_like_text(input.bytes())) {
-    read_text(input, vertices, mesh.faces);
+  const bool is_text = !has_binary_size(input.bytes()) && looks_like_text(input.bytes());
+  if (is_text) {
+    read_text(input, coordinates, mesh.faces);
   } else {
     read_binary(input, vertices, mesh.faces);
+    for (const Vec3& p : vertices.positions()) coordinates.push(p.x(), p.y(), p.z());
   }
   if (mesh.faces.empty()) input.fail("the file holds no triangles");
-  Coordinates coordinates;
-  for (const Vec3& p : vertices.positions()) coordinates.push(p.x(), p.y(), p.z());
   coordinates.move_to(mesh, input);
+  if (is_text) {
+    for (Index& v : mesh.faces.corners()) v = vertices.add(mesh.positions[v]);
+    mesh.positions = vertices.take();
+  }
   return mesh;
 }
 
