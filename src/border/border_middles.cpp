@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "border/lock_borders.h"
 #include "extract/drop_unused.h"
@@ -73,6 +75,22 @@ bool may_merge(const Mesh& mesh, const VertexFaces& around, Index gone, Index ke
   return true;
 }
 
+/// Faces with vertices that became others, or no_index, and none of them twice in a row.
+void merge_vertices(Faces& faces, const std::vector<Index>& into) {
+  Faces merged;
+  std::vector<Index> corners;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    corners.clear();
+    for (const Index v : std::as_const(faces)[f]) {
+      const Index to = into[v] == no_index ? v : into[v];
+      if (corners.empty() || corners.back() != to) corners.push_back(to);
+    }
+    if (corners.size() > 1 && corners.front() == corners.back()) corners.pop_back();
+    merged.push_back(corners);
+  }
+  faces = std::move(merged);
+}
+
 }  // namespace
 
 void lock_middles(Extraction& extraction, const BorderLoops& borders, const Graph& graph) {
@@ -96,32 +114,33 @@ void drop_spare_middles(Extraction& extraction) {
   Mesh& mesh = extraction.mesh;
   const auto& nodes = extraction.nodes;
   const auto is_spare = [&](const Middle& m) { return nodes[m.vertex] == nodes[m.before]; };
-  for (;;) {
+  for (bool again = true; std::exchange(again, false);) {
     const std::vector<Middle> spare = border_middles(mesh, is_spare);
     if (spare.empty()) break;
-    bool any = false;
+    const VertexFaces around = vertex_faces(mesh);
+    std::vector<Index> into(mesh.positions.size(), no_index);
+    std::vector<std::uint8_t> has_changed(mesh.faces.size(), 0);
+    const auto is_as_it_was = [&](Index v) {
+      return std::ranges::all_of(around[v], [&](Index f) { return !has_changed[f]; });
+    };
+    // Those beside each other take turns: what was said of the faces between them no longer holds.
     for (const auto& [before, v, after] : spare) {
-      const VertexFaces around = vertex_faces(mesh);
       for (const Index kept : {before, after}) {
-        if (!may_merge(mesh, around, v, kept)) continue;
-        Faces faces;
-        std::vector<Index> corners;
-        for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-          corners.clear();
-          for (const Index c : std::as_const(mesh.faces)[f]) {
-            const Index to = c == v ? kept : c;
-            if (corners.empty() || corners.back() != to) corners.push_back(to);
-          }
-          if (corners.size() > 1 && corners.front() == corners.back()) corners.pop_back();
-          faces.push_back(corners);
+        if (!is_as_it_was(v) || !is_as_it_was(kept)) {
+          again = true;
+          break;
         }
-        mesh.faces = std::move(faces);
-        std::erase(extraction.corners, v);
-        any = true;
+        if (!may_merge(mesh, around, v, kept)) continue;
+        into[v] = kept;
+        for (const Index w : {v, kept}) {
+          for (const Index f : around[w]) has_changed[f] = 1;
+        }
+        again = true;
         break;
       }
     }
-    if (!any) break;
+    std::erase_if(extraction.corners, [&](Index v) { return into[v] != no_index; });
+    if (again) merge_vertices(mesh.faces, into);
   }
   drop_unused(extraction);
 }
