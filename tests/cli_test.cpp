@@ -541,6 +541,9 @@ TEST_F(Cli, SeveralSizesInOneRun) {
   expect_refused("in.obj -o out.obj --lod 500,x", 2, "--lod");
   expect_refused("in.obj -o out.obj --lod 500,0", 2, "--lod");
   expect_refused("in.obj -o out.obj --lod -5", 2, "--lod");
+  expect_refused("in.obj -o out.obj -f 0", 2, "\"0\" is not a positive number");
+  expect_refused("in.obj -o out.obj -f 99999999999", 2, "more than the 4294967295");
+  expect_refused("in.obj -o out.obj -s -1", 2, "\"-1\" is not a positive number");
   expect_refused("in.obj -o out.obj --lod 500 -f 100", 2, "--lod");
   expect_refused("in.obj -o out.obj --lod 500 --fields-out f.ply", 2, "--lod");
   expect_refused("in.obj -o out.obj --lod 500,50 --symmetry x", 1, "symmetric");

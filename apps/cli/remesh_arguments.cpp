@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <string_view>
 
@@ -51,6 +52,30 @@ std::string refuse_unless_finite(const std::string& text) {
   double number = 0;
   const bool finite = CLI::detail::lexical_cast(text, number) && std::isfinite(number);
   return finite ? "" : "\"" + text + "\" is not a number";
+}
+
+std::string refuse_unless_positive(const std::string& text) {
+  double number = 0;
+  const bool positive = CLI::detail::lexical_cast(text, number) && number > 0;
+  return positive && std::isfinite(number) ? "" : "\"" + text + "\" is not a positive number";
+}
+
+std::string refuse_if_negative(const std::string& text) {
+  double number = 0;
+  const bool is_valid = CLI::detail::lexical_cast(text, number) && number >= 0;
+  return is_valid && std::isfinite(number) ? "" : "\"" + text + "\" is not a number from 0 on";
+}
+
+/// Of faces or vertices.
+std::string refuse_unless_count(const std::string& text) {
+  constexpr double most = std::numeric_limits<Index>::max();
+  double number = 0;
+  const bool is_number = CLI::detail::lexical_cast(text, number);
+  if (is_number && number > most) {
+    return "\"" + text + "\" is more than the " +
+           std::to_string(std::numeric_limits<Index>::max()) + " that a mesh can have";
+  }
+  return refuse_unless_positive(text);
 }
 
 /// "auto", "marked", "off" or degrees.
@@ -104,8 +129,9 @@ std::size_t parse_memory(const std::string& text) {
 void parse_levels(const std::string& text, std::vector<std::size_t>& levels) {
   for (const std::string& word : CLI::detail::split(text, ',')) {
     std::size_t count = 0;
-    const bool is_signed = word.find('-') != word.npos;
-    if (is_signed || !CLI::detail::lexical_cast(word, count) || count == 0) {
+    const std::string refusal = refuse_unless_count(word);
+    if (!refusal.empty()) throw CLI::ValidationError("--lod", refusal);
+    if (!CLI::detail::lexical_cast(word, count)) {
       throw CLI::ValidationError("--lod", "\"" + word + "\" is no number of faces");
     }
     levels.push_back(count);
@@ -140,16 +166,15 @@ void add_options(CLI::App& app, Arguments& a) {
       ->type_name("FILE");
 
   app.add_option("-f,--faces", o.face_count, "so many faces, in the mesh that is written")
-      ->check(CLI::PositiveNumber)
+      ->check(refuse_unless_count)
       ->type_name("N")
       ->group("How fine (one of these; by default about a sixteenth of the input's vertices)");
   app.add_option("-v,--vertices", o.vertex_count, "so many vertices, in the mesh that is written")
-      ->check(CLI::PositiveNumber)
+      ->check(refuse_unless_count)
       ->type_name("N")
       ->group(app.get_option("-f")->get_group());
   app.add_option("-s,--scale", o.edge_length, "edges so long, in the mesh that is written")
-      ->check(refuse_unless_finite)
-      ->check(CLI::PositiveNumber)
+      ->check(refuse_unless_positive)
       ->type_name("LENGTH")
       ->group(app.get_option("-f")->get_group());
   app.add_option_function<std::string>(
@@ -209,8 +234,7 @@ void add_options(CLI::App& app, Arguments& a) {
             ->type_name("X"));
   faces(app.add_option("--min-component", o.min_component,
                        "leave out pieces with room for fewer faces than this (0)")
-            ->check(refuse_unless_finite)
-            ->check(CLI::NonNegativeNumber)
+            ->check(refuse_if_negative)
             ->type_name("N"));
   faces(app.add_flag("--manifold", o.manifold, "drop faces where the result is not manifold"));
 
