@@ -100,6 +100,7 @@ void make_mesh(Pipeline& pipeline) {
   pipeline.untie_knots();
   pipeline.note_odd_borders();
   pipeline.note_scraps();
+  pipeline.note_parted_hexagons();
   pipeline.report_fields();
 }
 

@@ -161,6 +161,29 @@ TEST(Topology, PiecesThatMeetAlongAnEdgeLeaveNoCrack) {
   }
 }
 
+/// A comb, whose teeth are hardly wider than what hexagons leave out along the border.
+TEST(Topology, HexagonsSayWhereTheyFallApart) {
+  Mesh comb = made::grid(17, 6, false, false, [](double u, double v) {
+    return Vec3(static_cast<float>(17 * u), static_cast<float>(6 * v), 0);
+  });
+  Faces kept;
+  for (std::size_t f = 0; f < comb.faces.size(); ++f) {
+    const auto face = std::as_const(comb.faces)[f];
+    Vec3 middle = Vec3::Zero();
+    for (const Index v : face) middle += comb.positions[v] / static_cast<float>(face.size());
+    if (middle.y() < 1 || static_cast<int>(middle.x()) % 2 == 0) kept.push_back(face);
+  }
+  comb.faces = std::move(kept);
+  RemeshOptions options;
+  options.faces = OutputFaces::hexagons;
+  options.face_count = 60;
+  const RemeshResult result = remesh(comb, options);
+  EXPECT_GT(mesh_statistics(result.mesh).components, 1u);
+  EXPECT_TRUE(std::ranges::any_of(result.report.notes, [](const std::string& note) {
+    return note.starts_with("1 piece fell into ");
+  }));
+}
+
 /// Holes and pieces that are nothing but faults take few faces from the rest.
 TEST(Topology, ManyTinyHolesAndPiecesLeaveTheShape) {
   const Mesh scan = faulty_scan(500);

@@ -2,6 +2,8 @@
 
 #include "remesh/pipeline.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -15,6 +17,7 @@
 #include "mesh/border.h"
 #include "meshgrain/error.h"
 #include "meshgrain/singularities.h"
+#include "meshgrain/statistics.h"
 #include "meshgrain/surface.h"
 #include "remesh/flattened_share.h"
 #include "remesh/holes_and_pieces.h"
@@ -306,6 +309,17 @@ void Pipeline::note_odd_borders() {
   result_.report.notes.push_back(
       std::to_string(triangles) + (triangles == 1 ? " triangle" : " triangles") +
       ": quads alone do not meet the borders that stay (none meet an odd number of edges)");
+}
+
+void Pipeline::note_parted_hexagons() {
+  if (options_.faces != OutputFaces::hexagons || is_cloud_) return;
+  const std::size_t before = mesh_statistics(surface_).components;
+  const std::size_t after = mesh_statistics(extraction_.mesh).components;
+  if (after <= before) return;
+  result_.report.notes.push_back(fmt::format(
+      "{} {} fell into {}: hexagons leave out what lies along a border, and more of them "
+      "would leave out less",
+      before, before == 1 ? "piece" : "pieces", after));
 }
 
 void Pipeline::report_fields() {

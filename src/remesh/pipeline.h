@@ -88,6 +88,9 @@ class Pipeline {
   void note_odd_borders();
   /// If there are many pieces smaller than a face.
   void note_scraps();
+  /// If pieces fell apart, as where a strip is hardly wider than the hexagons left out along
+  /// borders.
+  void note_parted_hexagons();
   /// Their edge length and singularities.
   void report_fields();
 
