@@ -672,10 +672,21 @@ TEST(CancelOnInterrupt, CancelsItsContext) {
 
 TEST_F(Cli, EveryFormatIsWritten) {
   sample("cube", "in.obj", 0.2);
-  for (const char* name : {"out.obj", "out.ply", "out.off", "out.stl"}) {
+  for (const char* name : {"out.obj", "out.ply", "out.off"}) {
     run_well(std::string("in.obj -f 200 --output ") + name);
     EXPECT_FALSE(read_mesh(folder_ / name).faces.empty());
   }
+  run_well("in.obj -f 200 -p 6 --output triangles.stl");
+  EXPECT_FALSE(read_mesh(folder_ / "triangles.stl").faces.empty());
+  // Two triangles for each quad were not asked for.
+  const std::size_t quads = read_mesh(folder_ / "out.obj").faces.size();
+  const Run split = run("in.obj -f 200 --output out.stl");
+  EXPECT_EQ(split.status, 0);
+  EXPECT_EQ(split.err,
+            fmt::format("meshgrain: note: STL holds triangles only: {} faces are {} in the "
+                        "file\n",
+                        quads, 2 * quads));
+  EXPECT_EQ(read_mesh(folder_ / "out.stl").faces.size(), 2 * quads);
 }
 
 TEST_F(Cli, AFileMayHaveTheNameOfACommand) {

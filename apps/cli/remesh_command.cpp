@@ -36,6 +36,16 @@ std::vector<Guide> read_guides(const std::string& text, const Context& context) 
   return guides_of(read_polylines(text.substr(0, colon), context), strength);
 }
 
+/// Fewer faces were asked for than the file has.
+void note_split_faces(const std::string& path, RemeshResult& result) {
+  const Faces& faces = result.mesh.faces;
+  if (!holds_triangles_only(path)) return;
+  const std::size_t triangles = faces.corners().size() - 2 * faces.size();
+  if (triangles == faces.size()) return;
+  result.report.notes.push_back(fmt::format("STL holds triangles only: {} faces are {} in the file",
+                                            faces.size(), triangles));
+}
+
 /// Given fields decide what they decide.
 void check_fields(const Arguments& a, const Fields& fields) {
   const std::string name = file_name(a.fields);
@@ -180,7 +190,10 @@ void run(Arguments& a, Context& context) {
   context.progress("write", 0);
   const auto write_start = std::chrono::steady_clock::now();
   if (!a.fields_out.empty()) write_fields(a.fields_out, results.front().fields);
-  for (std::size_t k = 0; k < results.size(); ++k) write_mesh(paths[k], results[k].mesh);
+  for (std::size_t k = 0; k < results.size(); ++k) {
+    write_mesh(paths[k], results[k].mesh);
+    note_split_faces(paths[k], results[k]);
+  }
   const double write_seconds = seconds_since(write_start);
   const double seconds = seconds_since(start);
   const bool summary = !a.quiet && stderr_is_terminal();

@@ -45,6 +45,9 @@ Polylines read_polylines(const std::filesystem::path& path, const Context& conte
 /// the extension is unknown or the place cannot be written.
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh);
 
+/// Whether write_mesh() splits polygons into triangles there.
+bool holds_triangles_only(const std::filesystem::path& path);
+
 /// Throws the error that write_mesh would throw for an unknown extension or a missing or read-only
 /// folder, so that a long computation need not end in one.
 void check_writable(const std::filesystem::path& path);

@@ -123,6 +123,10 @@ void write_mesh(const std::filesystem::path& path, const Mesh& mesh) {
   output.commit();
 }
 
+bool holds_triangles_only(const std::filesystem::path& path) {
+  return format_to_write(path).write == io::write_stl;
+}
+
 void check_writable(const std::filesystem::path& path) {
   format_to_write(path);
   check_place(path);
