@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <iterator>
 #include <limits>
 #include <map>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -15,13 +18,20 @@
 namespace meshgrain {
 namespace {
 
-/// The chains of edges along the lines of a mesh.
+/// The chains of edges along the lines that are cuts: those with two vertices there.
 class Chains {
  public:
-  explicit Chains(const Extraction& extraction) : mesh_(extraction.mesh) {
+  Chains(const Extraction& extraction, const std::vector<std::uint8_t>& on_cut)
+      : mesh_(extraction.mesh) {
+    std::map<Index, std::set<Index>> known;  // vertices on cuts, of each line
+    for (const LineEdge& edge : extraction.line_edges) {
+      for (const Index v : {edge.a, edge.b}) {
+        if (on_cut[v]) known[edge.line].insert(v);
+      }
+    }
     for (const LineEdge& edge : extraction.line_edges) {
       const auto ends = edge_of(edge.a, edge.b);
-      if (ends[0] == ends[1]) continue;
+      if (ends[0] == ends[1] || known[edge.line].size() < 2) continue;
       lines_.try_emplace(ends, edge.line);
       lines_of_[edge.line].push_back(ends);
     }
@@ -32,7 +42,13 @@ class Chains {
         if (lines_.contains(ends)) ++faces_[ends];
       }
     }
-    for (auto& [line, edges] : lines_of_) sort_unique(edges);
+    for (auto& [line, edges] : lines_of_) {
+      sort_unique(edges);
+      for (const auto& [a, b] : edges) {
+        neighbors_[{line, a}].push_back(b);
+        neighbors_[{line, b}].push_back(a);
+      }
+    }
   }
 
   const std::map<Index, std::vector<std::array<Index, 2>>>& lines() const { return lines_of_; }
@@ -61,7 +77,7 @@ class Chains {
     best.off = most_off * (mesh_.positions[to] - mesh_.positions[from]).norm();
     Way way;
     way.vertices.push_back(from);
-    go_on(way, to, lines_of_.at(lines_.at(edge_of(from, to))), best);
+    go_on(way, to, lines_.at(edge_of(from, to)), best);
     if (best.vertices.empty()) return {};
     return {best.vertices.begin() + 1, best.vertices.end()};
   }
@@ -76,14 +92,12 @@ class Chains {
   };
 
   /// Tries all ways on that lead ahead and stay beside the edge.
-  void go_on(Way& way, Index to, std::span<const std::array<Index, 2>> edges, Way& best) const {
+  void go_on(Way& way, Index to, Index line, Way& best) const {
     const Index from = way.vertices.front(), last = way.vertices.back();
     const Vec3& start = mesh_.positions[from];
     const Vec3 along = mesh_.positions[to] - start;
     const float reached = (mesh_.positions[last] - start).dot(along);
-    for (const auto& [a, b] : edges) {
-      if (a != last && b != last) continue;
-      const Index next = a == last ? b : a;
+    for (const Index next : neighbors_.at({line, last})) {
       if (next == to) {
         if (last != from && way.off < best.off) best = way;
         continue;
@@ -96,21 +110,23 @@ class Chains {
       Way further = way;
       further.vertices.push_back(next);
       further.off = std::max(way.off, off);
-      go_on(further, to, edges, best);
+      go_on(further, to, line, best);
     }
   }
 
   const Mesh& mesh_;
   std::map<std::array<Index, 2>, Index> lines_;
   std::map<Index, std::vector<std::array<Index, 2>>> lines_of_;
-  std::map<std::array<Index, 2>, int> faces_;  // how many each edge has
+  std::map<std::array<Index, 2>, std::vector<Index>> neighbors_;  // of a vertex, along a line
+  std::map<std::array<Index, 2>, int> faces_;                     // how many each edge has
 };
 
 /// Vertices of open edges become those of another chain of their line that are close.
-void join_close(Extraction& extraction, const Context& context) {
+void join_close(Extraction& extraction, const std::vector<std::uint8_t>& on_cut,
+                const Context& context) {
   constexpr float close = 0.5f;  // of an edge
   Mesh& mesh = extraction.mesh;
-  const Chains chains(extraction);
+  const Chains chains(extraction, on_cut);
   const VertexFaces around = vertex_faces(mesh, context);
   std::vector<Index> into(mesh.positions.size(), no_index);
   for (const auto& [line, edges] : chains.lines()) {
@@ -191,12 +207,13 @@ void put_in(Faces& faces, std::span<const Index> face, const Crack& crack,
 
 }  // namespace
 
-void close_cracks(Extraction& extraction, std::size_t most_corners, const Context& context) {
-  join_close(extraction, context);
+void close_cracks(Extraction& extraction, const std::vector<std::uint8_t>& on_cut,
+                  std::size_t most_corners, const Context& context) {
+  join_close(extraction, on_cut, context);
   Mesh& mesh = extraction.mesh;
   for (bool again = true; std::exchange(again, false);) {
     context.check();
-    const Chains chains(extraction);
+    const Chains chains(extraction, on_cut);
     Faces faces;
     for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
       const auto face = std::as_const(mesh.faces)[f];

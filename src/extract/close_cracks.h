@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "meshgrain/extract.h"
 
@@ -10,6 +12,8 @@ namespace meshgrain {
 /// along the same line, but with vertices that may differ. Makes those one that are close to each
 /// other, and gives edges that have none the vertices of the others beside them, so that no crack
 /// is left. Triangles stay triangles; other faces get no more corners than `most_corners`.
-void close_cracks(Extraction& extraction, std::size_t most_corners, const Context& context);
+/// `on_cut`: a flag a vertex, for those that are known to be on such edges.
+void close_cracks(Extraction& extraction, const std::vector<std::uint8_t>& on_cut,
+                  std::size_t most_corners, const Context& context);
 
 }  // namespace meshgrain

@@ -103,9 +103,14 @@ void join_pieces(Extraction& extraction, std::vector<CollapsedMesh::Meeting> mee
     edge = {sets.find(edge.a), sets.find(edge.b), edge.line};
   }
   for (Index& v : extraction.corners) v = sets.find(v);
-  if (std::ranges::any_of(meetings, &CollapsedMesh::Meeting::along_edge)) {
-    close_cracks(extraction, most_corners, context);
+  std::vector<std::uint8_t> on_cut(extraction.mesh.positions.size(), 0);
+  for (const auto& [a, b, count, along_edge] : meetings) {
+    if (!along_edge) continue;
+    for (const Index cluster : {a, b}) {
+      if (vertex[cluster] != no_index) on_cut[sets.find(vertex[cluster])] = 1;
+    }
   }
+  if (std::ranges::count(on_cut, 1) > 0) close_cracks(extraction, on_cut, most_corners, context);
   drop_unused(extraction);
 }
 
