@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string_view>
 
 #include "arguments.h"
@@ -47,33 +48,30 @@ CLI::Option* add_choice(CLI::App& app, const std::string& option, T& value, cons
   return app.add_option_function<std::string>(option, set, text)->type_name(type_name);
 }
 
-/// Refuses "nan" and "inf", which CLI11's ranges let through.
-std::string refuse_unless_finite(const std::string& text) {
+/// Not "nan" and "inf", which CLI11's ranges let through.
+std::optional<double> finite_number(const std::string& text) {
   double number = 0;
-  const bool finite = CLI::detail::lexical_cast(text, number) && std::isfinite(number);
-  return finite ? "" : "\"" + text + "\" is not a number";
+  if (!CLI::detail::lexical_cast(text, number) || !std::isfinite(number)) return std::nullopt;
+  return number;
+}
+
+std::string refuse_unless_finite(const std::string& text) {
+  return finite_number(text) ? "" : "\"" + text + "\" is not a number";
 }
 
 std::string refuse_unless_positive(const std::string& text) {
-  double number = 0;
-  const bool positive = CLI::detail::lexical_cast(text, number) && number > 0;
-  return positive && std::isfinite(number) ? "" : "\"" + text + "\" is not a positive number";
+  return finite_number(text).value_or(0) > 0 ? "" : "\"" + text + "\" is not a positive number";
 }
 
 std::string refuse_if_negative(const std::string& text) {
-  double number = 0;
-  const bool is_valid = CLI::detail::lexical_cast(text, number) && number >= 0;
-  return is_valid && std::isfinite(number) ? "" : "\"" + text + "\" is not a number from 0 on";
+  return finite_number(text).value_or(-1) >= 0 ? "" : "\"" + text + "\" is not a number from 0 on";
 }
 
 /// Of faces or vertices.
 std::string refuse_unless_count(const std::string& text) {
-  constexpr double most = std::numeric_limits<Index>::max();
-  double number = 0;
-  const bool is_number = CLI::detail::lexical_cast(text, number);
-  if (is_number && number > most) {
-    return "\"" + text + "\" is more than the " +
-           std::to_string(std::numeric_limits<Index>::max()) + " that a mesh can have";
+  constexpr Index most = std::numeric_limits<Index>::max();
+  if (finite_number(text).value_or(0) > most) {
+    return fmt::format("\"{}\" is more than the {} that a mesh can have", text, most);
   }
   return refuse_unless_positive(text);
 }

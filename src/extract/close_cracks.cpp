@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <iterator>
-#include <limits>
 #include <map>
 #include <set>
 #include <span>
@@ -91,15 +89,18 @@ class Chains {
     float off = 0;  // the largest distance from the edge
   };
 
-  /// Tries all ways on that lead ahead and stay beside the edge.
+  /// Tries all ways on that lead ahead and stay beside the edge, in steps that are shorter: so
+  /// faces get ever shorter edges, and closing cracks has an end.
   void go_on(Way& way, Index to, Index line, Way& best) const {
     const Index from = way.vertices.front(), last = way.vertices.back();
     const Vec3& start = mesh_.positions[from];
     const Vec3 along = mesh_.positions[to] - start;
     const float reached = (mesh_.positions[last] - start).dot(along);
     for (const Index next : neighbors_.at({line, last})) {
+      const Vec3 step = mesh_.positions[next] - mesh_.positions[last];
+      if (step.squaredNorm() >= along.squaredNorm()) continue;
       if (next == to) {
-        if (last != from && way.off < best.off) best = way;
+        if (way.off < best.off) best = way;
         continue;
       }
       const Vec3 v = mesh_.positions[next] - start;
@@ -150,9 +151,7 @@ void join_close(Extraction& extraction, const std::vector<std::uint8_t>& on_cut,
       for (const Index w : all) {
         const float distance = (mesh.positions[v] - mesh.positions[w]).norm();
         if (w == v || into[w] != no_index || distance >= least) continue;
-        std::vector<Index> common;
-        std::ranges::set_intersection(around[v], around[w], std::back_inserter(common));
-        if (!common.empty()) continue;
+        if (share_any(around[v], around[w])) continue;
         least = distance;
         nearest = w;
       }

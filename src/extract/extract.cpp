@@ -125,6 +125,7 @@ Extraction extract_from_mesh(const Graph& graph, const OrientationField& orienta
   }
   std::vector<Index> vertex;
   Extraction result = collect_faces(lattice.map, repair, lattice.clusters, vertex, context);
+  // Quads that are still to be split may be pentagons.
   const std::size_t most_corners = position.posy == 6 ? 3 : options.only_quads ? 4 : 5;
   if (!options.manifold) join_pieces(result, collapsed.meetings, vertex, most_corners, context);
   return result;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <iterator>
 #include <map>
 #include <utility>
 
@@ -14,12 +13,6 @@
 
 namespace meshgrain {
 namespace {
-
-bool share_any(std::span<const Index> a, std::span<const Index> b) {
-  std::vector<Index> common;
-  std::ranges::set_intersection(a, b, std::back_inserter(common));
-  return !common.empty();
-}
 
 class Joining {
  public:

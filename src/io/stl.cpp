@@ -1,8 +1,8 @@
-// STL, text and binary (little endian). Its triangles share no vertices: they are welded while they
-// are read.
+// STL, text and binary (little endian). Its triangles share no vertices: they are welded.
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>

@@ -1,5 +1,8 @@
 #include "mesh/vertex_faces.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "mesh/sort_by_vertex.h"
 #include "meshgrain/error.h"
 #include "util/sort_unique.h"
@@ -17,6 +20,12 @@ VertexFaces vertex_faces(const Mesh& mesh, const Context& context) {
     return sort_by_vertex(faces.size(), mesh.positions.size(), corners, put, context);
   });
   return result;
+}
+
+bool share_any(std::span<const Index> a, std::span<const Index> b) {
+  std::vector<Index> common;
+  std::ranges::set_intersection(a, b, std::back_inserter(common));
+  return !common.empty();
 }
 
 std::vector<Index> vertices_of(const Mesh& mesh, std::span<const Index> faces) {

@@ -29,6 +29,9 @@ inline std::size_t corner_of(std::span<const Index> face, Index v) {
   return static_cast<std::size_t>(std::ranges::find(face, v) - face.begin());
 }
 
+/// Whether two lists in increasing order, such as of the faces around vertices, have any in common.
+bool share_any(std::span<const Index> a, std::span<const Index> b);
+
 /// The vertices of some faces, in increasing order.
 std::vector<Index> vertices_of(const Mesh& mesh, std::span<const Index> faces);
 

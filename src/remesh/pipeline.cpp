@@ -247,8 +247,9 @@ void Pipeline::refine_for_sizes() {
 void Pipeline::orient() {
   stage_("orientation field", [&] {
     if (options_.fields != nullptr) {
-      fields().orientation = transfer_orientation(*options_.fields, graph(), frame_, context_);
-      if (is_of_another_surface(*options_.fields, graph(), frame_, context_)) {
+      const FieldTransfer transfer(*options_.fields, graph(), frame_, context_);
+      fields().orientation = transfer.orientation();
+      if (transfer.is_of_another_surface(context_)) {
         result_.report.notes.emplace_back(
             "the given fields are of another surface: each value comes from the nearest of its "
             "vertices, which is far away");
@@ -313,7 +314,7 @@ void Pipeline::note_odd_borders() {
 
 void Pipeline::note_parted_hexagons() {
   if (options_.faces != OutputFaces::hexagons || is_cloud_) return;
-  const std::size_t before = mesh_statistics(surface_).components;
+  const std::size_t before = piece_areas(graph(), context_).size();
   const std::size_t after = mesh_statistics(extraction_.mesh).components;
   if (after <= before) return;
   result_.report.notes.push_back(fmt::format(
@@ -373,7 +374,7 @@ RemeshResult Pipeline::result() && {
   }
   fields().surface = std::move(surface_);
   fields().surface.normals = graph().normals;
-  fields().fine_lattice = lattice_faces_ != options_.faces;
+  fields().fine_lattice = has_quads_alone();
   leave(frame_, fields());
   result_.mesh = std::move(extraction_.mesh);
   leave(frame_, result_.mesh);

@@ -68,7 +68,7 @@ void Pipeline::find_faces() {
   for (int attempt = 0; attempt < attempts; ++attempt) {
     complete_levels();
     PositionField positions = stage_("position field", [&] {
-      return given ? transfer_position(*options_.fields, graph(), frame_, context_)
+      return given ? FieldTransfer(*options_.fields, graph(), frame_, context_).position()
                    : solve_positions();
     });
     // Another attempt is unlikely then.
