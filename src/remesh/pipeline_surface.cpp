@@ -20,7 +20,7 @@
 #include "remesh/memory.h"
 #include "remesh/notes.h"
 #include "remesh/pipeline.h"
-#include "remesh/take_out_noise.h"
+#include "remesh/sharpen_part.h"
 
 namespace meshgrain {
 namespace {
@@ -78,10 +78,10 @@ void Pipeline::drop_pieces() {
 
 void Pipeline::sharpen() {
   if (is_cloud_) return;
-  stage_("noise", [&] {
+  stage_("sharpen", [&] {
     input_size_ = surface_size(surface_, context_);
     const double side = target_.face_side(input_size_.area);
-    is_sharpened_ = take_out_noise(surface_, options_, side, result_.report.notes, context_);
+    is_sharpened_ = sharpen_part(surface_, options_, side, result_.report.notes, context_);
     if (is_sharpened_) input_size_ = surface_size(surface_, context_);
   });
   if (options_.lock_borders) locked_ = rim_vertices(surface_, context_);

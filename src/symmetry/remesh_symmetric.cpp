@@ -14,7 +14,7 @@
 #include "meshgrain/surface.h"
 #include "meshgrain/triangulate.h"
 #include "remesh/clean_input.h"
-#include "remesh/take_out_noise.h"
+#include "remesh/sharpen_part.h"
 #include "remesh/target.h"
 #include "symmetry/border_in_planes.h"
 #include "symmetry/fold_guides.h"
@@ -108,7 +108,7 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const RemeshHal
     // Before the cut, whose border has to stay where it is.
     const Target target(options, options.faces, vertices, 1);
     side = target.face_side(surface_area(input, context));
-    if (take_out_noise(input, options, side, notes, context)) {
+    if (sharpen_part(input, options, side, notes, context)) {
       options.features.creases = Creases::marked;
     }
   }

@@ -1,4 +1,4 @@
-#include "denoise/straighten.h"
+#include "sharpen/straighten.h"
 
 #include <Eigen/Dense>
 #include <algorithm>

@@ -1,13 +1,13 @@
-#include "denoise/join_corners.h"
+#include "sharpen/join_corners.h"
 
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
-#include "denoise/noisy_lines.h"
 #include "mesh/border.h"
 #include "mesh/vertex_faces.h"
 #include "meshgrain/clean.h"
+#include "sharpen/noisy_lines.h"
 #include "util/sort_unique.h"
 
 namespace meshgrain {

@@ -1,5 +1,3 @@
-#include "denoise/denoise.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -14,6 +12,7 @@
 #include "meshgrain/statistics.h"
 #include "meshgrain/surface.h"
 #include "same_topology.h"
+#include "sharpen/sharpen.h"
 
 namespace meshgrain {
 namespace {
@@ -27,7 +26,7 @@ double output_edge(const Mesh& mesh, double faces) {
   return std::sqrt(surface_area(mesh) / faces);
 }
 
-TEST(Denoise, PartsGetTheirCreasesBack) {
+TEST(NoisyPart, PartsGetTheirCreasesBack) {
   for (const char* name : {"cube", "cylinder", "bracket", "shaft", "twisted-cube", "fused-boxes"}) {
     SCOPED_TRACE(name);
     const Mesh part = sample_shape(name, 3);
@@ -41,7 +40,7 @@ TEST(Denoise, PartsGetTheirCreasesBack) {
 }
 
 /// Of which a sample shows less: patches of it lie between all creases.
-TEST(Denoise, FineScansOfRoundPartsAreTold) {
+TEST(NoisyPart, FineScansOfRoundPartsAreTold) {
   for (const auto& [name, resolution] : {std::pair{"shaft", 4.0}, {"cylinder", 6.0}}) {
     SCOPED_TRACE(name);
     const Mesh part = sample_shape(name, resolution);
@@ -54,7 +53,7 @@ TEST(Denoise, FineScansOfRoundPartsAreTold) {
 }
 
 /// Where no edge of the scan lies along a crease.
-TEST(Denoise, CreasesAreFoundBetweenTheSamples) {
+TEST(NoisyPart, CreasesAreFoundBetweenTheSamples) {
   RemeshOptions triangles;
   triangles.faces = OutputFaces::triangles;
   triangles.features.creases = Creases::none;
@@ -68,10 +67,10 @@ TEST(Denoise, CreasesAreFoundBetweenTheSamples) {
   EXPECT_GE(made::kept_creases(part, result).creases, 0.9);
 }
 
-TEST(Denoise, SurfacesComeNearerToThePart) {
+TEST(NoisyPart, SurfacesComeNearerToThePart) {
   const Mesh part = sample_shape("cube", 2);
   Mesh surface = scan(part);
-  ASSERT_TRUE(sharpen_noisy_part(surface, output_edge(part, 2000), Context()));
+  ASSERT_EQ(sharpen(surface, output_edge(part, 2000), Context()), Blur::noise);
   const auto off = [](const Mesh& mesh) {  // mean distance from the faces of the unit cube
     double sum = 0;
     for (const Vec3& p : mesh.positions) sum += std::abs(p.cwiseAbs().maxCoeff() - 0.5f);
@@ -81,22 +80,22 @@ TEST(Denoise, SurfacesComeNearerToThePart) {
 }
 
 /// Sculptures, noisy or not, and parts without noise.
-TEST(Denoise, AllElseStaysAsItIs) {
+TEST(NoisyPart, AllElseStaysAsItIs) {
   for (const char* name : {"sphere", "torus", "blob", "three-holes"}) {
     for (const double noise : {0.0, 0.05, 0.2, 0.4}) {
       const Mesh before = scan(sample_shape(name), noise);
       Mesh after = before;
-      EXPECT_FALSE(sharpen_noisy_part(after, output_edge(before, 2000), Context())) << name;
+      EXPECT_EQ(sharpen(after, output_edge(before, 2000), Context()), Blur::none) << name;
       EXPECT_EQ(after.positions, before.positions);
       EXPECT_TRUE(after.marked_edges.empty());
     }
   }
   Mesh part = sample_shape("bracket");
-  EXPECT_FALSE(sharpen_noisy_part(part, output_edge(part, 2000), Context()));
+  EXPECT_EQ(sharpen(part, output_edge(part, 2000), Context()), Blur::none);
 }
 
 /// Few sides around a tube meet at angles that noise has, too.
-TEST(Denoise, CoarseTubesStayAsTheyAre) {
+TEST(NoisyPart, CoarseTubesStayAsTheyAre) {
   constexpr std::size_t rings = 12, around = 48, across = 16;
   const made::Sample ring = made::torus(around, across, 1, 0.18);
   Mesh chain;
@@ -114,10 +113,10 @@ TEST(Denoise, CoarseTubesStayAsTheyAre) {
       }
     }
   }
-  EXPECT_FALSE(sharpen_noisy_part(chain, output_edge(chain, 3000), Context()));
+  EXPECT_EQ(sharpen(chain, output_edge(chain, 3000), Context()), Blur::none);
 }
 
-TEST(Denoise, SymmetryComesAfterIt) {
+TEST(NoisyPart, SymmetryComesAfterIt) {
   const Mesh part = sample_shape("cylinder", 2);
   RemeshOptions options;
   options.face_count = 3000;
@@ -128,18 +127,18 @@ TEST(Denoise, SymmetryComesAfterIt) {
   EXPECT_EQ(result.report.notes.size(), 2u);  // this, and that it was made symmetric
 }
 
-TEST(Denoise, CanBeLeftOut) {
+TEST(NoisyPart, CanBeLeftOut) {
   RemeshOptions options;
   options.face_count = 2000;
   options.features.creases = Creases::none;
   EXPECT_TRUE(remesh(scan(sample_shape("cube", 2)), options).report.notes.empty());
 }
 
-TEST(Denoise, DoesNotDependOnThreads) {
+TEST(NoisyPart, DoesNotDependOnThreads) {
   Mesh one = scan(sample_shape("bracket", 2)), three = one;
   const double edge = output_edge(one, 2000);
-  ASSERT_TRUE(sharpen_noisy_part(one, edge, Context(1)));
-  ASSERT_TRUE(sharpen_noisy_part(three, edge, Context(3)));
+  ASSERT_EQ(sharpen(one, edge, Context(1)), Blur::noise);
+  ASSERT_EQ(sharpen(three, edge, Context(3)), Blur::noise);
   EXPECT_EQ(one.positions, three.positions);
   EXPECT_EQ(one.marked_edges, three.marked_edges);
 }

@@ -15,4 +15,10 @@ std::vector<std::array<Index, 2>> connect_creases(const Mesh& triangles,
                                                   const std::vector<std::array<Index, 2>>& edges,
                                                   double shortest, const Context& context);
 
+/// Of lines that are connected already, drops rings of a few edges, twigs and pieces shorter than
+/// `shortest`.
+std::vector<std::array<Index, 2>> drop_scraps(const Mesh& triangles,
+                                              const std::vector<std::array<Index, 2>>& edges,
+                                              double shortest, const Context& context);
+
 }  // namespace meshgrain

@@ -1,4 +1,4 @@
-#include "denoise/normal_filter.h"
+#include "sharpen/normal_filter.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -62,7 +62,7 @@ void NormalFilter::run(int end) {
   constexpr int moves = 10;
   constexpr float first_spread = 0.4f, last_spread = 0.2f;
   for (; round_ < end; ++round_) {
-    context_.progress("noise", static_cast<double>(round_) / rounds);
+    context_.progress("sharpen", static_cast<double>(round_) / rounds);
     measure_facets();
     measure_patches();
     const float share = static_cast<float>(round_) / (rounds - 1);

@@ -1,4 +1,4 @@
-#include "denoise/denoise.h"
+#include "sharpen/noisy_part.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -6,14 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "denoise/crease_net.h"
-#include "denoise/join_corners.h"
-#include "denoise/noisy_lines.h"
-#include "denoise/normal_filter.h"
-#include "denoise/sample_patches.h"
-#include "denoise/straighten.h"
 #include "features/mechanical_creases.h"
 #include "meshgrain/surface.h"
+#include "sharpen/crease_net.h"
+#include "sharpen/normal_filter.h"
+#include "sharpen/sample_patches.h"
 
 namespace meshgrain {
 namespace {
@@ -84,17 +81,20 @@ CreaseLengths lengths_without_noise(Mesh& sample, const Context& context) {
   return lengths;
 }
 
-/// Some of the surface tells at once that most scans are no part, and less of it that most
-/// sculptures are none.
-bool is_noisy_part(const Mesh& triangles, const Context& context) {
-  Mesh sample = sample_patches(triangles, 32, 500, context);
+}  // namespace
+
+bool is_noisy_part(const Mesh& triangles, const Mesh& sample, const Context& context) {
   if (bends_evenly(sample) || !may_be_noisy(sample, context)) return false;
   constexpr double margin = 0.75;
   Mesh less = sample_patches(sample, 16, 250, context);
   const CreaseLengths hint = lengths_without_noise(less, context);
   if (hint.clear < margin * hint.doubtful) return false;
   const bool is_whole = less.faces.size() == sample.faces.size();
-  const CreaseLengths found = is_whole ? hint : lengths_without_noise(sample, context);
+  CreaseLengths found = hint;
+  if (!is_whole) {
+    Mesh all = sample;
+    found = lengths_without_noise(all, context);
+  }
   if (found.clear <= margin * clearly * found.doubtful) return false;
   // Noise leaves few edges as sharp as creases: else these are there without it, or it is a
   // sculpture with few large faces.
@@ -104,21 +104,13 @@ bool is_noisy_part(const Mesh& triangles, const Context& context) {
          mechanical_creases(triangles, edges, context).empty();
 }
 
-}  // namespace
-
-bool sharpen_noisy_part(Mesh& triangles, double edge_length, const Context& context) {
-  if (!is_noisy_part(triangles, context)) return false;
-  Mesh smooth = triangles;
-  NormalFilter(smooth, NormalFilter::Border::stays, context).run();
-  const auto found =
-      clear_creases(smooth, sharp_edges(smooth, flat_degrees, context), clearly, context);
-  if (found.empty()) return false;
-  const auto creases = connect_creases(smooth, found, edge_length, context);
-  smooth.marked_edges.insert(smooth.marked_edges.end(), creases.begin(), creases.end());
-  join_near_corners(smooth, 0.6 * edge_length, context);
-  straighten_lines(smooth, noisy_lines(smooth, edge_length), context);
-  triangles = std::move(smooth);
-  return true;
+std::vector<std::array<Index, 2>> take_out_noise(Mesh& triangles, double shortest,
+                                                 const Context& context) {
+  NormalFilter(triangles, NormalFilter::Border::stays, context).run();
+  const auto sharp = sharp_edges(triangles, flat_degrees, context);
+  const auto found = clear_creases(triangles, sharp, clearly, context);
+  if (found.empty()) return {};
+  return connect_creases(triangles, found, shortest, context);
 }
 
 }  // namespace meshgrain

@@ -1,4 +1,4 @@
-#include "denoise/noisy_lines.h"
+#include "sharpen/noisy_lines.h"
 
 #include "features/chain_edges.h"
 #include "mesh/marks.h"

@@ -1,4 +1,4 @@
-#include "denoise/crease_net.h"
+#include "sharpen/crease_net.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,10 +21,11 @@ using Edge = std::array<Index, 2>;
 
 class CreaseNet {
  public:
-  CreaseNet(const Mesh& mesh, double shortest, const Context& context)
+  /// Rings of up to `ring` are none.
+  CreaseNet(const Mesh& mesh, double ring, const Context& context)
       : mesh_(mesh),
         edge_(edge_lengths(mesh).mean),
-        ring_(std::max(12 * edge_, 3.5 * shortest)),
+        ring_(ring),
         neighbors_(mesh.positions.size()) {
     constexpr double all = -1;  // degrees
     for (const SharpEdge& edge : sharp_edges(mesh, all, context)) {
@@ -211,10 +212,21 @@ class CreaseNet {
 
 std::vector<Edge> connect_creases(const Mesh& triangles, const std::vector<Edge>& edges,
                                   double shortest, const Context& context) {
-  CreaseNet net(triangles, shortest, context);
+  const double ring = std::max(12 * edge_lengths(triangles).mean, 3.5 * shortest);
+  CreaseNet net(triangles, ring, context);
   net.add(edges);
   net.bridge_gaps();
   net.open_rings();
+  net.drop_twigs(shortest);
+  return net.edges();
+}
+
+std::vector<Edge> drop_scraps(const Mesh& triangles, const std::vector<Edge>& edges,
+                              double shortest, const Context& context) {
+  constexpr double around_a_vertex = 6;  // edges
+  const double ring = around_a_vertex * edge_lengths(triangles).mean;
+  CreaseNet net(triangles, ring, context);
+  net.add(edges);
   net.drop_twigs(shortest);
   return net.edges();
 }

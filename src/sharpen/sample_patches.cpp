@@ -1,4 +1,4 @@
-#include "denoise/sample_patches.h"
+#include "sharpen/sample_patches.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "meshgrain/context.h"
+#include "meshgrain/mesh.h"
+
+namespace meshgrain {
+
+/// Whether a surface is a noisy scan of a mechanical part, whose creases would be there without the
+/// noise. `sample` is some of the surface, and tells most others at once.
+bool is_noisy_part(const Mesh& triangles, const Mesh& sample, const Context& context);
+
+/// Takes the noise out of such a part, so that flat and round parts meet in sharp creases, and
+/// returns the edges of these; none if it was no such part after all. The border stays where it is.
+/// Creases shorter than `shortest` are none.
+std::vector<std::array<Index, 2>> take_out_noise(Mesh& triangles, double shortest,
+                                                 const Context& context);
+
+}  // namespace meshgrain

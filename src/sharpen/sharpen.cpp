@@ -1,0 +1,42 @@
+#include "sharpen/sharpen.h"
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "sharpen/join_corners.h"
+#include "sharpen/noisy_lines.h"
+#include "sharpen/noisy_part.h"
+#include "sharpen/sample_patches.h"
+#include "sharpen/sharpen_chamfers.h"
+#include "sharpen/straighten.h"
+
+namespace meshgrain {
+namespace {
+
+/// Some of the surface tells at once that most sculptures and scans are none.
+Blur blur_of(const Mesh& triangles, const Context& context) {
+  const Mesh sample = sample_patches(triangles, 32, 500, context);
+  if (is_chamfered_part(triangles, sample, context)) return Blur::chamfers;
+  if (is_noisy_part(triangles, sample, context)) return Blur::noise;
+  return Blur::none;
+}
+
+}  // namespace
+
+Blur sharpen(Mesh& triangles, double edge_length, const Context& context) {
+  const Blur blur = blur_of(triangles, context);
+  if (blur == Blur::none) return blur;
+  Mesh sharp = triangles;
+  const std::vector<std::array<Index, 2>> creases =
+      blur == Blur::chamfers ? sharpen_chamfers(sharp, edge_length, context)
+                             : take_out_noise(sharp, edge_length, context);
+  if (creases.empty()) return Blur::none;
+  sharp.marked_edges.insert(sharp.marked_edges.end(), creases.begin(), creases.end());
+  join_near_corners(sharp, 0.6 * edge_length, context);
+  straighten_lines(sharp, noisy_lines(sharp, edge_length), context);
+  triangles = std::move(sharp);
+  return blur;
+}
+
+}  // namespace meshgrain

@@ -1,0 +1,402 @@
+#include "sharpen/sharpen_chamfers.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include "features/mechanical_creases.h"
+#include "finish/crossings.h"
+#include "mesh/border.h"
+#include "mesh/splitting.h"
+#include "mesh/vertex_faces.h"
+#include "sharpen/chamfers.h"
+#include "sharpen/crease_net.h"
+#include "sharpen/sample_patches.h"
+#include "util/edge_of.h"
+#include "util/sort_unique.h"
+
+namespace meshgrain {
+namespace {
+
+using Point = Eigen::Vector3d;
+using Edge = std::array<Index, 2>;
+
+constexpr std::size_t grain = 512;
+
+/// How many vertices are not smooth, and how many of these lie at a crease between two smooth
+/// parts, or beside one that does.
+struct RoughVertices {
+  std::size_t all = 0, at_creases = 0;
+};
+
+RoughVertices rough_vertices(const Mesh& triangles, const Context& context) {
+  constexpr int edges = 2;  // roundings are wider
+  const Chamfers chamfers(triangles, edges, context);
+  const std::size_t count = triangles.positions.size();
+  using Flags = std::vector<std::uint8_t>;
+  const auto flag = [&](const auto& test) {
+    Flags flags(count, 0);
+    context.for_ranges(count, grain, [&](std::size_t begin, std::size_t end) {
+      for (auto v = static_cast<Index>(begin); v < end; ++v) {
+        if (!chamfers.is_smooth(v)) flags[v] = test(v);
+      }
+    });
+    return flags;
+  };
+  const auto grown = [&](const Flags& flags) {
+    const auto is_flagged = [&](Index v) { return flags[v] != 0; };
+    return flag([&](Index v) { return is_flagged(v) || chamfers.any_beside(v, is_flagged); });
+  };
+  const auto at_crease = flag([&](Index v) {
+    return chamfers.any_beside(v, [&](Index w) { return chamfers.part(v, w); });
+  });
+  const Flags beside_crease = grown(at_crease);
+  // At a rim, such as a sample has, too little is around.
+  const Flags near_rim = grown(grown(mark_ends(rim_edges(triangles, context), count)));
+  RoughVertices rough;
+  for (Index v = 0; v < count; ++v) {
+    if (chamfers.is_smooth(v) || near_rim[v]) continue;
+    ++rough.all;
+    rough.at_creases += beside_crease[v];
+  }
+  return rough;
+}
+
+/// The point nearest to p on all of the planes.
+Point meet(const Point& p, std::span<const Plane> planes) {
+  constexpr double hardly = 1e-6;  // held where it is along what they leave open
+  Eigen::Matrix3d matrix = hardly * Eigen::Matrix3d::Identity();
+  Point right = Point::Zero();
+  for (const Plane& plane : planes) {
+    matrix += plane.normal * plane.normal.transpose();
+    right -= plane.normal * plane.height(p);
+  }
+  return p + matrix.ldlt().solve(right);
+}
+
+/// The vertices at which only one of the edges ends.
+std::size_t count_ends(std::span<const Edge> edges) {
+  std::vector<Index> ends;
+  for (const Edge& edge : edges) ends.insert(ends.end(), edge.begin(), edge.end());
+  std::ranges::sort(ends);
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < ends.size();) {
+    const std::size_t first = k;
+    while (k < ends.size() && ends[k] == ends[first]) ++k;
+    count += k == first + 1;
+  }
+  return count;
+}
+
+/// Whether two parts are the sides of a wedge so sharp that where it ends, thinner than a cell of
+/// the grid, they tell nothing.
+bool is_thin(std::span<const Plane> planes) {
+  constexpr double cosine = -0.866;  // of 150 degrees between the normals
+  return planes.size() == 2 && planes[0].normal.dot(planes[1].normal) < cosine;
+}
+
+Point cut_to(double length, const Point& way) {
+  const double norm = way.norm();
+  return norm > length ? Point(length / norm * way) : way;
+}
+
+class Sharpening {
+ public:
+  Sharpening(Mesh& mesh, const Context& context)
+      : mesh_(mesh),
+        before_(mesh),
+        context_(context),
+        chamfers_(before_, edges, context),
+        is_on_(mesh.positions.size(), 0) {
+    move_vertices();
+    split();
+    find_parts_of_faces();
+    place_corners();
+    space_out();
+    keep_apart();
+  }
+
+  std::vector<Edge> creases() const;
+
+  /// Which share of the vertices on creases had to go back to where they were.
+  double share_put_back() const {
+    const auto on = static_cast<double>(std::ranges::count(is_on_, 1));
+    return on > 0 ? static_cast<double>(put_back_) / on : 0;
+  }
+
+ private:
+  static constexpr int edges = 4;       // corners are wider than chamfers
+  static constexpr double near = 0.25;  // edges; vertices so near to a crease move onto it
+  static constexpr double far = 1.5;    // edges; creases are no farther off a chamfer
+
+  void move_vertices();
+  void split();
+  void find_parts_of_faces();
+  void place_corners();
+  void space_out();
+  void keep_apart();
+
+  bool is_crossed(Index a, Index b) const {
+    return !is_on_[a] && !is_on_[b] && chamfers_.part(a, b);
+  }
+  Index part_beside(Index f, const VertexFaces& around) const;
+  std::vector<Plane> parts_around(Index v, const VertexFaces& around) const;
+
+  Mesh& mesh_;
+  const Mesh before_;
+  const Context& context_;
+  const Chamfers chamfers_;
+  std::vector<std::uint8_t> is_on_;  // a crease, of each vertex
+  std::vector<Vec3> origins_;        // of each vertex, on the surface as it was
+  std::vector<Index> part_of_;       // of each face a vertex of its part
+  std::size_t put_back_ = 0;
+};
+
+std::vector<Edge> Sharpening::creases() const {
+  const auto is_crease = [&](const InnerEdge& e) {
+    const Index a = part_of_[e.left], b = part_of_[e.right];
+    return is_on_[e.ends[0]] && is_on_[e.ends[1]] && a != no_index && b != no_index &&
+           chamfers_.part(a, b);
+  };
+  std::vector<Edge> result;
+  for (const InnerEdge& e : inner_edges(mesh_, is_crease, context_)) result.push_back(e.ends);
+  return result;
+}
+
+/// Those of chamfers onto their parts, and of those near to a crease the nearest ones onto it.
+void Sharpening::move_vertices() {
+  struct Move {
+    double way = std::numeric_limits<double>::infinity();
+    Point to;
+  };
+  const std::size_t count = before_.positions.size();
+  std::vector<Move> moves(count);
+  context_.for_ranges(count, grain, [&](std::size_t begin, std::size_t end) {
+    for (auto v = static_cast<Index>(begin); v < end; ++v) {
+      if (!chamfers_.has_part(v)) continue;
+      const Point p = chamfers_.position(v);
+      const Plane own = chamfers_.plane(v);
+      const Point up = -own.height(p) * own.normal;
+      if (!chamfers_.is_smooth(v) && up.norm() < chamfers_.edge()) {
+        mesh_.positions[v] = (p + up).cast<float>();
+      }
+      chamfers_.each_beside(v, [&](Index w) {
+        if (!chamfers_.part(v, w)) return;
+        const Point to = meet(p, std::array{own, chamfers_.plane(w)});
+        const double way = (to - p).norm();
+        if (way < near * chamfers_.edge() && way < moves[v].way) moves[v] = {way, to};
+      });
+    }
+  });
+  const auto is_nearest = [&](Index v) {
+    return !chamfers_.any_beside(v, [&](Index w) {
+      return chamfers_.part(v, w) && std::pair(moves[w].way, w) < std::pair(moves[v].way, v);
+    });
+  };
+  context_.for_ranges(count, grain, [&](std::size_t begin, std::size_t end) {
+    for (auto v = static_cast<Index>(begin); v < end; ++v) {
+      if (!std::isfinite(moves[v].way) || !is_nearest(v)) continue;
+      mesh_.positions[v] = moves[v].to.cast<float>();
+      is_on_[v] = 1;
+    }
+  });
+}
+
+/// Edges that a crease crosses, and faces in which three meet.
+void Sharpening::split() {
+  std::vector<Edge> crossed;
+  std::vector<Index> with_corner;
+  for (Index f = 0; f < before_.faces.size(); ++f) {
+    const auto c = before_.faces[f];
+    std::size_t crossings = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index a = c[k], b = c[(k + 1) % 3];
+      if (!is_crossed(a, b)) continue;
+      crossed.push_back(edge_of(a, b));
+      ++crossings;
+    }
+    if (crossings == 3) with_corner.push_back(f);
+  }
+  sort_unique(crossed);
+  origins_ = before_.positions;
+  Splitting splitting(mesh_);
+  const auto place = [&](Index added, const Point& origin, std::span<const Plane> planes) {
+    Point to = origin;
+    if (!is_thin(planes)) to += cut_to(far * chamfers_.edge(), meet(origin, planes) - origin);
+    mesh_.positions[added] = to.cast<float>();
+    origins_.push_back(origin.cast<float>());
+  };
+  for (const Index f : with_corner) {
+    const auto c = before_.faces[f];
+    const std::array planes{chamfers_.plane(c[0]), chamfers_.plane(c[1]), chamfers_.plane(c[2])};
+    const Point middle =
+        (chamfers_.position(c[0]) + chamfers_.position(c[1]) + chamfers_.position(c[2])) / 3;
+    place(splitting.split_face(f, {1. / 3, 1. / 3, 1. / 3}), middle, planes);
+  }
+  for (const auto& [a, b] : crossed) {
+    const Point middle = (chamfers_.position(a) + chamfers_.position(b)) / 2;
+    place(splitting.split_edge(a, b, 0.5), middle,
+          std::array{chamfers_.plane(a), chamfers_.plane(b)});
+  }
+  is_on_.resize(mesh_.positions.size(), 1);
+}
+
+/// A face is of the part of its corners that are not on a crease; one that has none is of that of a
+/// face beside it.
+void Sharpening::find_parts_of_faces() {
+  part_of_.assign(mesh_.faces.size(), no_index);
+  std::vector<Index> open;
+  for (Index f = 0; f < part_of_.size(); ++f) {
+    for (const Index v : std::as_const(mesh_.faces)[f]) {
+      if (!is_on_[v] && chamfers_.has_part(v)) part_of_[f] = v;
+    }
+    if (part_of_[f] == no_index) open.push_back(f);
+  }
+  const VertexFaces around = vertex_faces(mesh_, context_);
+  while (!open.empty()) {
+    std::vector<std::pair<Index, Index>> found;
+    std::vector<Index> still_open;
+    for (const Index f : open) {
+      const Index part = part_beside(f, around);
+      if (part != no_index) {
+        found.emplace_back(f, part);
+      } else {
+        still_open.push_back(f);
+      }
+    }
+    if (found.empty()) return;
+    for (const auto& [f, part] : found) part_of_[f] = part;
+    open = std::move(still_open);
+  }
+}
+
+/// The one that looks most the way that the face does.
+Index Sharpening::part_beside(Index f, const VertexFaces& around) const {
+  const auto c = std::as_const(mesh_.faces)[f];
+  const auto at = [&](std::size_t k) -> Point { return mesh_.positions[c[k]].cast<double>(); };
+  const Point normal = (at(1) - at(0)).cross(at(2) - at(0));
+  Index part = no_index;
+  double best = -std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (const Index g : around[c[k]]) {
+      const auto other = std::as_const(mesh_.faces)[g];
+      const bool is_beside = corner_of(other, c[(k + 1) % 3]) < other.size();
+      if (part_of_[g] == no_index || !is_beside) continue;
+      const double agrees = chamfers_.plane(part_of_[g]).normal.dot(normal);
+      if (agrees <= best) continue;
+      best = agrees;
+      part = part_of_[g];
+    }
+  }
+  return part;
+}
+
+/// Planes that touch the parts around a vertex, one of those that would meet in no crease.
+std::vector<Plane> Sharpening::parts_around(Index v, const VertexFaces& around) const {
+  std::vector<Plane> planes;
+  for (const Index f : around[v]) {
+    if (part_of_[f] == no_index) continue;
+    const Plane plane = chamfers_.plane(part_of_[f]);
+    const auto differs = [&](const Plane& other) { return make_crease(plane, other); };
+    if (std::ranges::all_of(planes, differs)) planes.push_back(plane);
+  }
+  return planes;
+}
+
+/// Vertices on creases around which three parts or more meet.
+void Sharpening::place_corners() {
+  const VertexFaces around = vertex_faces(mesh_, context_);
+  context_.for_ranges(mesh_.positions.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (auto v = static_cast<Index>(begin); v < end; ++v) {
+      if (!is_on_[v]) continue;
+      const std::vector<Plane> planes = parts_around(v, around);
+      if (planes.size() < 3) continue;
+      const Point p = mesh_.positions[v].cast<double>(), corner = meet(p, planes);
+      if ((corner - p).norm() < far * chamfers_.edge()) mesh_.positions[v] = corner.cast<float>();
+    }
+  });
+}
+
+/// Vertices along creases, where they may have come out of order.
+void Sharpening::space_out() {
+  constexpr int rounds = 5;
+  std::vector<std::vector<Index>> beside(mesh_.positions.size());
+  for (const auto& [a, b] : creases()) {
+    beside[a].push_back(b);
+    beside[b].push_back(a);
+  }
+  const VertexFaces around = vertex_faces(mesh_, context_);
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<Vec3> places = mesh_.positions;
+    context_.for_ranges(places.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (auto v = static_cast<Index>(begin); v < end; ++v) {
+        if (beside[v].size() != 2) continue;
+        const Vec3 between = (mesh_.positions[beside[v][0]] + mesh_.positions[beside[v][1]]) / 2;
+        const Point p = mesh_.positions[v].cast<double>();
+        const Point to = meet((p + between.cast<double>()) / 2, parts_around(v, around));
+        if ((to - p).norm() < chamfers_.edge()) places[v] = to.cast<float>();
+      }
+    });
+    mesh_.positions = std::move(places);
+  }
+}
+
+/// Puts vertices back at which the surface would pass through itself, as where it has a gap or a
+/// wall hardly wider than a chamfer.
+void Sharpening::keep_apart() {
+  constexpr double deep = 0.05;  // edges; slivers side by side may seem to cross a little
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const auto& [f, g] : find_crossings(mesh_, context_)) {
+      if (penetration(mesh_, f, g) < deep * chamfers_.edge()) continue;
+      for (const Index face : {f, g}) {
+        for (const Index v : std::as_const(mesh_.faces)[face]) {
+          if (mesh_.positions[v] == origins_[v]) continue;
+          mesh_.positions[v] = origins_[v];
+          put_back_ += is_on_[v];
+          changed = true;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+bool is_chamfered_part(const Mesh& triangles, const Mesh& sample, const Context& context) {
+  // In parts without noise .83 to 1, in sculptures and scans at most .64.
+  constexpr double least = 0.8, least_of_sample = 0.6;
+  constexpr std::size_t telling = 100;  // vertices
+  const auto share = [](const RoughVertices& rough) {
+    return static_cast<double>(rough.at_creases) /
+           static_cast<double>(std::max<std::size_t>(rough.all, 1));
+  };
+  const auto tells = [&](const Mesh& some) {
+    const RoughVertices rough = rough_vertices(some, context);
+    return rough.all >= telling && share(rough) < least_of_sample;
+  };
+  const Mesh less = sample_patches(sample, 16, 250, context);
+  if (tells(less)) return false;
+  if (sample.faces.size() < triangles.faces.size() && tells(sample)) return false;
+  if (share(rough_vertices(triangles, context)) < least) return false;
+  const RimAndSharpEdges edges = rim_and_sharp_edges(triangles, flat_degrees, context);
+  return mechanical_creases(triangles, edges, context).empty();
+}
+
+std::vector<Edge> sharpen_chamfers(Mesh& triangles, double shortest, const Context& context) {
+  const Sharpening sharpening(triangles, context);
+  constexpr double most_put_back = 0.2;  // of thin walls two thirds were
+  if (sharpening.share_put_back() > most_put_back) return {};
+  std::vector<Edge> creases = drop_scraps(triangles, sharpening.creases(), shortest, context);
+  // Those of a part end in others. In parts it was one of 250 edges that did not, in sculptures one
+  // of 70 and more, in shapes with wider roundings one of 30.
+  constexpr std::size_t few = 100;
+  if (few * count_ends(creases) > creases.size()) creases.clear();
+  return creases;
+}
+
+}  // namespace meshgrain

@@ -1,0 +1,146 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "finish/crossings.h"
+#include "kept_creases.h"
+#include "made_volume.h"
+#include "meshgrain/remesh.h"
+#include "meshgrain/shapes.h"
+#include "meshgrain/statistics.h"
+#include "meshgrain/surface.h"
+#include "same_topology.h"
+#include "sharpen/sharpen.h"
+#include "sharpen/sharpen_chamfers.h"
+
+namespace meshgrain {
+namespace {
+
+using Point = Eigen::Vector3d;
+
+const Eigen::Matrix3d askew =
+    Eigen::AngleAxisd(0.5, Point(0.3, 1, 0.4).normalized()).toRotationMatrix();
+
+double box(const Point& p, const Point& half) {
+  const Point q = p.cwiseAbs() - half;
+  return q.cwiseMax(0).norm() + std::min(q.maxCoeff(), 0.0);
+}
+
+double cylinder(const Point& p, double radius, double half_height) {
+  const Point q(std::hypot(p.x(), p.y()) - radius, std::abs(p.z()) - half_height, 0);
+  return q.cwiseMax(0).norm() + std::min(q.head<2>().maxCoeff(), 0.0);
+}
+
+Mesh turned(Mesh mesh, const Eigen::Matrix3d& by) {
+  for (Vec3& p : mesh.positions) p = by.cast<float>() * p;
+  return mesh;
+}
+
+Mesh sampled_cube(int cells, const Eigen::Matrix3d& by = askew) {
+  const auto cube = [&](const Point& p) { return box(by.transpose() * p, Point::Constant(0.5)); };
+  return made::sampled_on_grid(cube, cells);
+}
+
+TEST(Chamfers, PartsSampledOnAGridGetTheirCreasesBack) {
+  const auto can = [](const Point& p) {
+    const Point q = askew.transpose() * p;
+    return cylinder({q.x(), q.z(), q.y()}, 0.5, 0.5);
+  };
+  const std::pair<const char*, Mesh> sampled[] = {{"cube", sampled_cube(40)},
+                                                  {"cylinder", made::sampled_on_grid(can, 40)}};
+  for (const auto& [name, mesh] : sampled) {
+    SCOPED_TRACE(name);
+    const Mesh part = turned(sample_shape(name, 3), askew);
+    RemeshOptions options;
+    options.face_count = 600;
+    const RemeshResult result = remesh(mesh, options);
+    made::expect_same_topology(mesh_statistics(result.mesh), mesh_statistics(part));
+    const made::Kept kept = made::kept_creases(part, result.mesh);
+    EXPECT_GE(kept.creases, 0.97);
+    EXPECT_EQ(kept.corners, 1);
+    EXPECT_EQ(result.report.notes.size(), 1u);
+    options.features.creases = Creases::none;
+    const RemeshResult without = remesh(mesh, options);
+    EXPECT_LE(made::kept_creases(part, without.mesh).creases, 0.3);
+    EXPECT_TRUE(without.report.notes.empty());
+  }
+}
+
+/// Concave edges, and corners at which they meet others.
+TEST(Chamfers, SurfacesMeetWhereThePartHasItsEdges) {
+  constexpr int cells = 48;
+  const auto bracket = [](const Point& p) {
+    const Point q = askew.transpose() * p;
+    const double both = std::min(box(q + Point(0, 0.4, 0), Point(0.6, 0.15, 0.4)),
+                                 box(q + Point(0.45, 0, 0), Point(0.15, 0.55, 0.4)));
+    const Point through(q.x() - 0.2, q.z(), q.y());
+    return std::max(both, -cylinder(through, 0.2, 1));
+  };
+  Mesh surface = made::sampled_on_grid(bracket, cells);
+  ASSERT_EQ(sharpen(surface, 0.05, Context()), Blur::chamfers);
+  double off = 0;
+  for (const auto& [a, b] : surface.marked_edges) {
+    const Vec3 middle = (surface.positions[a] + surface.positions[b]) / 2;
+    off += std::abs(bracket(middle.cast<double>()));
+  }
+  const auto count = static_cast<double>(surface.marked_edges.size());
+  EXPECT_GE(count, 500);
+  EXPECT_LE(off / count, 0.04 * 2.0 / cells);
+}
+
+TEST(Chamfers, AllElseStaysAsItIs) {
+  constexpr int cells = 40;
+  const auto ball = [](const Point& p) { return p.norm() - 0.7; };
+  const auto rounded = [&](const Point& p) {  // by four cells
+    constexpr double by = 4 * 2.0 / cells;
+    return box(askew.transpose() * p, Point::Constant(0.6 - by)) - by;
+  };
+  const auto waves = [](const Point& p) {
+    return p.norm() - 0.6 - 0.1 * std::sin(9 * p.x()) * std::sin(9 * p.y()) * std::sin(9 * p.z());
+  };
+  const auto voxels = [](const Point& p) { return p.norm() < 0.7 ? -1.0 : 1.0; };
+  for (const made::Volume& volume :
+       {made::Volume(ball), made::Volume(rounded), made::Volume(waves), made::Volume(voxels)}) {
+    const Mesh before = made::sampled_on_grid(volume, cells);
+    Mesh after = before;
+    EXPECT_EQ(sharpen(after, 0.05, Context()), Blur::none);
+    EXPECT_EQ(after.positions, before.positions);
+    EXPECT_TRUE(after.marked_edges.empty());
+  }
+  for (const char* name : {"cube", "bracket", "shaft", "fused-boxes", "cylinder"}) {
+    Mesh part = sample_shape(name);
+    EXPECT_EQ(sharpen(part, 0.05, Context()), Blur::none) << name;
+  }
+}
+
+/// A column that hardly touches a wall: in the gap beside that they are nearer to each other than
+/// the sides of a cell.
+TEST(Chamfers, SurfacesDoNotPassThroughEachOther) {
+  constexpr int cells = 40;
+  const auto column_at_wall = [](const Point& p) {
+    const Point q = askew.transpose() * p;
+    constexpr double deep = 0.5 * 2.0 / cells;
+    return std::min(box(q + Point(0.2, 0, 0), Point(0.3, 0.5, 0.4)),
+                    cylinder(q - Point(0.3 - deep, 0, 0), 0.2, 0.35));
+  };
+  Mesh surface = made::sampled_on_grid(column_at_wall, cells);
+  ASSERT_FALSE(sharpen_chamfers(surface, 0.05, Context()).empty());
+  const double edge = edge_lengths(surface).mean;
+  for (const auto& [f, g] : find_crossings(surface, Context())) {
+    EXPECT_LE(penetration(surface, f, g), 0.06 * edge);
+  }
+}
+
+TEST(Chamfers, DoNotDependOnThreads) {
+  Mesh one = sampled_cube(30), three = one;
+  ASSERT_EQ(sharpen(one, 0.05, Context(1)), Blur::chamfers);
+  ASSERT_EQ(sharpen(three, 0.05, Context(3)), Blur::chamfers);
+  EXPECT_EQ(one.positions, three.positions);
+  EXPECT_EQ(one.marked_edges, three.marked_edges);
+}
+
+}  // namespace
+}  // namespace meshgrain
