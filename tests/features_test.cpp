@@ -327,6 +327,52 @@ Mesh voxel_ball(double radius) {
 }
 
 /// Faces larger than a step cannot have it as an edge.
+/// A square column, turned by so many turns on its way up in so many steps.
+Mesh twisted_column(int steps, double turns) {
+  constexpr double height = 6;
+  Mesh mesh;
+  for (int k = 0; k <= steps; ++k) {
+    const double up = static_cast<double>(k) / steps;
+    for (int corner = 0; corner < 4; ++corner) {
+      const double angle = (0.25 * corner + turns * up) * 2 * std::numbers::pi;
+      mesh.positions.push_back(
+          Eigen::Vector3d(std::cos(angle), std::sin(angle), height * up).cast<float>());
+    }
+  }
+  for (Index k = 0; k < static_cast<Index>(steps); ++k) {
+    for (Index corner = 0; corner < 4; ++corner) {
+      const Index a = 4 * k + corner, b = 4 * k + (corner + 1) % 4;
+      mesh.faces.push_back({a, b, b + 4});
+      mesh.faces.push_back({a, b + 4, a + 4});
+    }
+  }
+  const auto top = static_cast<Index>(4 * steps);
+  mesh.faces.push_back({3, 2, 1, 0});
+  mesh.faces.push_back({top, top + 1, top + 2, top + 3});
+  return mesh;
+}
+
+/// There are more of them than edges; followed they make four times the faces, half of them bad.
+TEST(Features, FacetsOfATwistedColumnAreNoCreasesOfCoarseFaces) {
+  const Mesh column = twisted_column(60, 1);
+  RemeshOptions options;
+  for (const std::size_t count : {300u, 1000u}) {
+    options.face_count = count;
+    const RemeshResult result = remesh(column, options);
+    const MeshStatistics s = mesh_statistics(result.mesh);
+    made::expect_same_topology(s, mesh_statistics(column));
+    const auto wanted = static_cast<double>(count);
+    EXPECT_NEAR(static_cast<double>(s.faces), wanted, 0.01 * wanted);
+    EXPECT_EQ(s.inverted_quads, 0u);
+    ASSERT_EQ(result.report.notes.size(), 1u);
+    EXPECT_TRUE(result.report.notes[0].starts_with("without creases: there are about as many"));
+  }
+  options.features.creases = Creases::by_angle;  // those that are asked for stay
+  const RemeshResult followed = remesh(column, options);
+  made::expect_same_topology(mesh_statistics(followed.mesh), mesh_statistics(column));
+  EXPECT_GT(followed.mesh.faces.size(), 2 * options.face_count);
+}
+
 TEST(Features, StepsOfVoxelsYieldToSoundFaces) {
   const Mesh ball = voxel_ball(11);
   ASSERT_GT(features_of(triangulate(ball)).size(), 500u);

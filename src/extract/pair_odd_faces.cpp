@@ -26,6 +26,14 @@ constexpr double of_contraction = 1.5;    // see contract_end()
 constexpr double of_border = 3;           // which others may have to match
 constexpr double of_bare_vertex = 20;     // see needs_edge()
 
+/// Whether an edge is crossed twice.
+bool comes_back(const std::vector<Index>& exits) {
+  std::vector<Index> edges;
+  for (const Index h : exits) edges.push_back(h / 2);
+  std::ranges::sort(edges);
+  return std::ranges::adjacent_find(edges) != edges.end();
+}
+
 class OddFaces {
  public:
   OddFaces(PolygonMap& map, FaceRepair& repair, const Context& context)
@@ -228,19 +236,22 @@ void OddFaces::join(Index from, Index to) {
     }
     return true;
   });
-  if (!exits.empty() && contract_end(exits.back())) exits.pop_back();
-  if (!exits.empty() && !to_border && contract_end(PolygonMap::twin(exits[0]))) {
-    exits.erase(exits.begin());
-  }
-  if (exits.size() == 1 && !to_border && repair_.may_join_triangles(exits[0])) {
-    map_.remove_edge(exits[0]);
-    return;
-  }
-  if (exits.size() > 1 && take_end(PolygonMap::twin(exits.back()), exits[exits.size() - 2])) {
-    exits.pop_back();
-  }
-  if (exits.size() > 1 && !to_border && take_end(exits[0], PolygonMap::twin(exits[1]))) {
-    exits.erase(exits.begin());
+  // A way that goes around something may come back over an edge, which has to stay then.
+  if (!comes_back(exits)) {
+    if (!exits.empty() && contract_end(exits.back())) exits.pop_back();
+    if (!exits.empty() && !to_border && contract_end(PolygonMap::twin(exits[0]))) {
+      exits.erase(exits.begin());
+    }
+    if (exits.size() == 1 && !to_border && repair_.may_join_triangles(exits[0])) {
+      map_.remove_edge(exits[0]);
+      return;
+    }
+    if (exits.size() > 1 && take_end(PolygonMap::twin(exits.back()), exits[exits.size() - 2])) {
+      exits.pop_back();
+    }
+    if (exits.size() > 1 && !to_border && take_end(exits[0], PolygonMap::twin(exits[1]))) {
+      exits.erase(exits.begin());
+    }
   }
   for (const Index exit : exits) repair_.split_edge(exit);
   for (const Index exit : exits) {

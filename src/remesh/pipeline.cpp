@@ -86,14 +86,42 @@ void Pipeline::find_lines() {
   if (is_cloud_ || !nodes_are_vertices_) return;
   if (options_.lock_borders) find_borders();
   stage_("features", [&] {
-    FeatureOptions options = feature_options();
-    if (options_.orientation_energy != OrientationEnergy::extrinsic) options.orient_creases = 1;
-    // Triangles cannot follow two creases that meet at right angles.
-    if (posy_of(options_.faces) == 6) options.align_creases = 0.3f;
-    features_ = find_features(surface_, options, guides_, target_.face_side(area_), context_);
+    const auto find = [&] {
+      FeatureOptions options = feature_options();
+      if (options_.orientation_energy != OrientationEnergy::extrinsic) options.orient_creases = 1;
+      // Triangles cannot follow two creases that meet at right angles.
+      if (posy_of(options_.faces) == 6) options.align_creases = 0.3f;
+      features_ = find_features(surface_, options, guides_, target_.face_side(area_), context_);
+    };
+    find();
+    if (may_leave_out_creases() && have_no_room()) {
+      leaves_out_creases_ = true;
+      find();
+      result_.report.notes.emplace_back(
+          "without creases: there are about as many of them as edges of faces of this size");
+    }
     append(feature_constraints(features_));
     append(guide_constraints(guides_, features_.corners));
   });
+}
+
+bool Pipeline::may_leave_out_creases() const {
+  const bool has_marks = is_coarsened_ ? had_marks_ : !surface_.marked_edges.empty();
+  return options_.features.creases == Creases::automatic && !has_marks && !leaves_out_creases_ &&
+         !is_cloud_ && nodes_are_vertices_;
+}
+
+bool Pipeline::have_no_room() const {
+  double length = 0;
+  for (std::size_t line = 0; line < features_.size(); ++line) {
+    for (Index k = features_.begin(line) + 1; k < features_.end(line); ++k) {
+      length += (features_.positions[k] - features_.positions[k - 1]).norm();
+    }
+  }
+  // A mesh of quads has twice as many edges as faces. In parts at 300 faces lines take up to six
+  // tenths of them, and are followed.
+  constexpr double most = 0.75 * 2;
+  return length * target_.face_side(area_) > most * area_;
 }
 
 bool Pipeline::is_coarse_for_bends() const {
@@ -352,7 +380,7 @@ void Pipeline::change_target(const RemeshOptions& options) {
   size_faces();
   keeps_singularities_.clear();
   crossings_of_surface_.reset();  // what is near to them depends on the size of a face
-  if (!left_out_creases && !started_elsewhere) return;
+  if (left_out_creases == leaves_out_creases_ && !started_elsewhere) return;
   complete_levels();
   orient();
 }

@@ -186,6 +186,11 @@ class Pipeline {
   /// steps of a surface around voxels, or parts that are thinner than a face. Returns whether that
   /// is better.
   bool try_without_creases(const Flaws& before);
+  /// Whether there may be creases that nobody asked for.
+  bool may_leave_out_creases() const;
+  /// Whether there are more lines than edges that could follow them, as where each facet of a
+  /// twisted bar or a thin hair counts as a crease.
+  bool have_no_room() const;
   /// What there is with borders that stay divided into edges as long as faces, where faces that
   /// meet far longer ones are folded. Returns whether that is better.
   bool try_divided_borders(const Flaws& before);

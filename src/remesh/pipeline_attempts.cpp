@@ -144,9 +144,7 @@ bool Pipeline::try_without_creases(const Flaws& before) {
       before.faults > 0 && target_.finished_ratio(extraction_.mesh) > 1 + target_.tolerance();
   // Where there is more than one fault a face, nothing helps.
   if (!(before.are_hopeless(faces) || are_too_fine) || before.faults > faces) return false;
-  const bool has_marks = is_coarsened_ ? had_marks_ : !surface_.marked_edges.empty();
-  const bool may_go = options_.features.creases == Creases::automatic && !has_marks;
-  if (!may_go || leaves_out_creases_ || is_cloud_ || !nodes_are_vertices_) return false;
+  if (!may_leave_out_creases()) return false;
   const auto on_rim = rim_vertices(surface_, context_);
   const auto is_inside = [&](Index v) { return on_rim[v] == 0; };
   if (std::ranges::none_of(features_.vertices, is_inside)) return false;
