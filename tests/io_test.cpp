@@ -789,6 +789,27 @@ TEST_F(Io, StlBinaryMayBeginWithSolid) {
   EXPECT_EQ(error_of("d.stl", bytes.substr(0, bytes.size() - 70)),
             "d.stl: byte 214: the file ends within triangle 3 of 4");
   EXPECT_EQ(read("e.stl", bytes + "more").faces.size(), 4u);
+  bytes[80] = 3;
+  EXPECT_EQ(error_of("f.stl", bytes),
+            "f.stl: byte 234: the header counts 3 triangles, but 50 bytes follow these");
+}
+
+/// Programs write such of faces without an area. Positions must be finite.
+TEST_F(Io, NormalsThatAreNotFiniteAreNone) {
+  const std::string obj = "vn nan nan nan\nvn 0 0 1\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2//2 3//2\n";
+  EXPECT_EQ(read("a.obj", obj).faces.size(), 1u);
+  EXPECT_EQ(error_of("a.obj", replaced(obj, "nan nan nan", "0 up 1")),
+            "a.obj: line 1: expected normal y, found \"up\"");
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0 nan nan nan\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n";
+  const Mesh mesh = read("a.ply", ply);
+  ASSERT_EQ(mesh.normals.size(), 3u);
+  EXPECT_EQ(mesh.normals[0], Vec3::Zero());
+  EXPECT_EQ(mesh.normals[1], Vec3::UnitZ());
+  EXPECT_NE(error_of("a.ply", replaced(ply, "1 0 0 0 0 1", "1 nan 0 0 0 1")), "no error");
 }
 
 TEST_F(Io, StlErrorsNameThePlace) {
@@ -843,6 +864,18 @@ std::string scan(const char* normals, const char* rows) {
       "ply\nformat ascii 1.0\nelement vertex 3\n{}{}"
       "element face 1\nproperty list uchar int vertex_indices\nend_header\n{}",
       ply_points, normals, rows);
+}
+
+TEST_F(Io, AlnKeepsTheMarksOfScans) {
+  const std::string scan =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+      "element edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n"
+      "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n1 2\n";
+  file("scan.ply", scan);
+  const std::string at = "scan.ply\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+  const std::vector<std::array<Index, 2>> marks{{1, 2}, {4, 5}};
+  EXPECT_EQ(read("a.aln", "2\n" + at + at).marked_edges, marks);
 }
 
 TEST_F(Io, AlnPutsScansTogether) {

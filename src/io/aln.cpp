@@ -46,7 +46,7 @@ void skip_flag(Text& text) {
   if (ahead.line_ends()) text.next_line();
 }
 
-/// All but the positions goes to `mesh`.
+/// All but the positions go to `mesh`.
 void append(const Mesh& scan, const Eigen::Affine3d& transform, const Input& file,
             Coordinates& coordinates, Mesh& mesh) {
   const std::size_t before = coordinates.size();
@@ -66,11 +66,13 @@ void append(const Mesh& scan, const Eigen::Affine3d& transform, const Input& fil
     mesh.normals.push_back(n.allFinite() ? n.cast<float>() : Vec3(Vec3::Zero()));
   }
   mesh.values.insert(mesh.values.end(), scan.values.begin(), scan.values.end());
+  const auto first = static_cast<Index>(before);
+  for (const auto& [a, b] : scan.marked_edges) mesh.marked_edges.push_back({first + a, first + b});
   std::vector<Index> face;
   for (std::size_t f = 0; f < scan.faces.size(); ++f) {
     const std::span<const Index> corners = scan.faces[f];
     face.assign(corners.begin(), corners.end());
-    for (Index& v : face) v += static_cast<Index>(before);
+    for (Index& v : face) v += first;
     mesh.faces.push_back(face);
   }
 }

@@ -11,6 +11,7 @@
 #include "mesh/join_edges.h"
 #include "mesh/weld.h"
 #include "meshgrain/error.h"
+#include "util/platform.h"
 
 namespace meshgrain {
 namespace {
@@ -139,6 +140,8 @@ void write_file(const std::filesystem::path& path, std::string_view bytes) {
 }
 
 void check_place(const std::filesystem::path& path) {
+  // Who reads from a pipe would take its being opened and closed for the end.
+  if (platform::is_stream(path)) return;
   const io::Output probe(path);  // creates a temporary file and removes it again
 }
 

@@ -163,13 +163,15 @@ class Reader {
     }
   }
 
-  /// Normals of corners need not be good ones: they may be missing as well.
+  /// They need not be good ones, which programs make of faces that have no area: normals may be
+  /// missing as well.
   void read_normal() {
     Eigen::Vector3d n = Eigen::Vector3d::Zero();
     if (mesh_.faces.empty()) {
-      n.x() = text_.number("normal x");
-      n.y() = text_.number("normal y");
-      n.z() = text_.number("normal z");
+      n.x() = text_.number_or_nan("normal x");
+      n.y() = text_.number_or_nan("normal y");
+      n.z() = text_.number_or_nan("normal z");
+      if (!n.allFinite()) n.setZero();
     } else if (!text_.try_number(n.x()) || !text_.try_number(n.y()) || !text_.try_number(n.z())) {
       n.setZero();
     }

@@ -29,7 +29,11 @@ Output::Output(const std::filesystem::path& path) : path_(path), target_(path) {
     }
   }
   errno = 0;
-  file_.open(temporary_.empty() ? target_ : temporary_, std::ios::binary | std::ios::trunc);
+  if (temporary_.empty()) {
+    file_.open(target_, std::ios::binary | std::ios::app);  // others may write there, too
+  } else {
+    file_.open(temporary_, std::ios::binary | std::ios::trunc);
+  }
   if (!file_) fail_with_system_error();
 }
 

@@ -174,8 +174,10 @@ class Reader {
           skip(property, item);
           continue;
         }
-        const double number = body_.number(property.type, item);
-        if (!(std::abs(number) <= std::numeric_limits<float>::max())) {
+        const bool of_normal = places[p] >= 3 && places[p] < unwanted && column_of[p] == no_column;
+        const double number = of_normal ? body_.number_or_nan(property.type, item)
+                                        : body_.number(property.type, item);
+        if (!of_normal && !(std::abs(number) <= std::numeric_limits<float>::max())) {
           body_.fail_at_last(property.type,
                              fmt::format("{} is not finite in single precision, in {}",
                                          in_quotes(property.name), item.text()));
@@ -184,7 +186,9 @@ class Reader {
         if (column_of[p] != no_column) columns_[column_of[p]].numbers.push_back(number);
       }
       coordinates_.push(row[0], row[1], row[2]);
-      if (normals) mesh_.normals.emplace_back(Eigen::Vector3d(&row[3]).cast<float>());
+      if (!normals) continue;
+      const Vec3 normal = Eigen::Vector3d(&row[3]).cast<float>();
+      mesh_.normals.push_back(normal.allFinite() ? normal : Vec3(Vec3::Zero()));
     }
   }
 

@@ -29,6 +29,7 @@ class TextBody {
     last_ = text_.at();
     return value;
   }
+  double number_or_nan(Type, const Item& item) { return text_.number_or_nan(item, "a number"); }
   void skip(Type, std::uint64_t count, const Item& item) {
     for (std::uint64_t i = 0; i < count; ++i) {
       if (text_.file_ends()) text_.fail("the file ends within " + item.text());
@@ -63,6 +64,7 @@ class BinaryBody {
     if constexpr (order != std::endian::native) std::reverse(bytes.begin(), bytes.end());
     return std::bit_cast<T>(bytes);
   }
+  double number_or_nan(Type type, const Item& item) { return number(type, item); }
   double number(Type type, const Item& item) {
     if (left() < size_of(type)) fail_at_end(item);
     const char* const at = std::exchange(at_, at_ + size_of(type));

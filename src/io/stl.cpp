@@ -58,6 +58,12 @@ void read_binary(const Input& input, DistinctPositions& vertices, Faces& faces) 
     input.fail_at_byte(input.end(),
                        "the file ends within " + Item{"triangle", whole, count}.text());
   }
+  if (whole > count) {
+    input.fail_at_byte(
+        at + count * triangle_bytes,
+        fmt::format("the header counts {} triangles, but {} bytes follow these", count,
+                    bytes.size() - header_bytes - 4 - count * triangle_bytes));
+  }
   faces.reserve(count, 3 * count);
   for (std::uint64_t t = 0; t < count; ++t, at += triangle_bytes) {
     if (t % 65536 == 0) input.progress(at);

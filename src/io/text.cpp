@@ -95,6 +95,19 @@ double Text::number(const Item& item, const char* what) {
   return number(what);
 }
 
+double Text::number_or_nan(const char* what) {
+  double value = 0;
+  const char* after = nullptr;
+  if (line_ends() || parse(value, after) != Parsed::not_finite) return number(what);
+  word();
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+double Text::number_or_nan(const Item& item, const char* what) {
+  if (file_ends()) fail("the file ends within " + item.text());
+  return number_or_nan(what);
+}
+
 bool Text::try_number(double& value) {
   return !line_ends() && parse(value, at_) == Parsed::number;
 }

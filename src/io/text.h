@@ -61,6 +61,9 @@ class Text {
   double number(const char* what);
   /// The same across lines; the error says that the file ends within `item` if it does.
   double number(const Item& item, const char* what);
+  /// The same, but NaN instead of a number that is not finite.
+  double number_or_nan(const char* what);
+  double number_or_nan(const Item& item, const char* what);
   /// Reads a number if there is one; else stays put and returns false.
   bool try_number(double& value);
   /// Reads a whole number that is not negative.

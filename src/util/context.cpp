@@ -42,17 +42,17 @@ void Context::progress(std::string_view stage, double fraction) const {
 
 void Context::for_ranges(std::size_t count, std::size_t grain,
                          const std::function<void(std::size_t, std::size_t)>& body) const {
-  check();
-  if (count == 0) return;
+  if (count == 0) return check();
   const std::size_t ranges = (count + grain - 1) / grain;
+  const auto run_range = [&](std::size_t r) {
+    check();
+    body(r * grain, std::min(count, (r + 1) * grain));
+  };
   if (ranges == 1 || threads_ == 1) {
-    for (std::size_t r = 0; r < ranges; ++r) body(r * grain, std::min(count, (r + 1) * grain));
+    for (std::size_t r = 0; r < ranges; ++r) run_range(r);
     return;
   }
-  arena_->arena.execute([&] {
-    tbb::parallel_for(std::size_t{0}, ranges,
-                      [&](std::size_t r) { body(r * grain, std::min(count, (r + 1) * grain)); });
-  });
+  arena_->arena.execute([&] { tbb::parallel_for(std::size_t{0}, ranges, run_range); });
 }
 
 void Context::run(const std::function<void()>& body) const {
