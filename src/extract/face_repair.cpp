@@ -215,7 +215,9 @@ void FaceRepair::cut(Index a, Index b) {
 void FaceRepair::cut_pinches() {
   std::vector<Index> orbit;
   std::vector<Index> corner_of(clusters_.positions.size(), no_index);  // in the current orbit
+  std::vector<std::uint8_t> done(map_.halfedges(), 0);                 // once for all of an orbit
   for (Index h = 0; h < map_.halfedges(); ++h) {
+    if (done[h] != 0) continue;
     for (bool again = true; again && !map_.removed(h);) {
       map_.orbit(h, orbit);
       Index first = no_index, second = no_index;
@@ -231,6 +233,9 @@ void FaceRepair::cut_pinches() {
       for (const Index g : orbit) corner_of[map_.origin(g)] = no_index;
       again = first != no_index;
       if (again) cut(first, second);
+      if (!again) {
+        for (const Index g : orbit) done[g] = 1;
+      }
       corner_of.resize(clusters_.positions.size(), no_index);
     }
     if (!map_.removed(h) && map_.degree(h) == 2) map_.remove_edge(h);

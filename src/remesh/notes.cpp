@@ -30,7 +30,9 @@ std::vector<std::string> describe(const OrientReport& oriented) {
   }
   if (oriented.one_sided_pieces > 0) {
     notes.push_back("cut " + std::to_string(oriented.one_sided_pieces) +
-                    " pieces open along a short curve, as they have only one side");
+                    (oriented.one_sided_pieces == 1
+                         ? " piece open along a short curve, as it has only one side"
+                         : " pieces open along short curves, as they have only one side"));
   }
   return notes;
 }
