@@ -100,7 +100,6 @@ void Chamfers::straighten_normals() {
 
 /// From vertices that have a part to those beside them: so all that are of a part are connected.
 void Chamfers::spread() {
-  constexpr double far = 3;  // edges; planes tell little there
   constexpr double of_the_way = 0.3;
   change_parts([&](Index v) {
     if (has_part(v)) return part_of_[v];
@@ -111,7 +110,7 @@ void Chamfers::spread() {
       const Plane near = plane(w);
       const double way = (position(v) - near.point).norm();
       const double cost = std::abs(near.height(position(v))) + of_the_way * way;
-      if (way > far * edge_ || cost >= least) return;
+      if (cost >= least) return;
       least = cost;
       best = part_of_[w];
     });

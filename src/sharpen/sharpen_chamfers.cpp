@@ -368,7 +368,7 @@ void Sharpening::keep_apart() {
 }  // namespace
 
 bool is_chamfered_part(const Mesh& triangles, const Mesh& sample, const Context& context) {
-  // In parts without noise .83 to 1, in sculptures and scans at most .64.
+  // In parts without noise .83 to 1, in sculptures and scans at most .65.
   constexpr double least = 0.8, least_of_sample = 0.6;
   constexpr std::size_t telling = 100;  // vertices
   const auto share = [](const RoughVertices& rough) {
