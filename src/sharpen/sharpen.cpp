@@ -34,7 +34,8 @@ Blur sharpen(Mesh& triangles, double edge_length, const Context& context) {
   if (creases.empty()) return Blur::none;
   sharp.marked_edges.insert(sharp.marked_edges.end(), creases.begin(), creases.end());
   join_near_corners(sharp, 0.6 * edge_length, context);
-  straighten_lines(sharp, noisy_lines(sharp, edge_length), context);
+  const Corners corners = blur == Blur::chamfers ? Corners::stay : Corners::move;
+  straighten_lines(sharp, noisy_lines(sharp, edge_length), corners, context);
   triangles = std::move(sharp);
   return blur;
 }

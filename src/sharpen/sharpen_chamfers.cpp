@@ -129,9 +129,10 @@ class Sharpening {
   }
 
  private:
-  static constexpr int edges = 4;       // corners are wider than chamfers
-  static constexpr double near = 0.25;  // edges; vertices so near to a crease move onto it
-  static constexpr double far = 1.5;    // edges; creases are no farther off a chamfer
+  static constexpr int edges = 4;          // corners are wider than chamfers
+  static constexpr double near = 0.25;     // edges; vertices so near to a crease move onto it
+  static constexpr double far = 1.5;       // edges; creases are no farther off a chamfer, and
+  static constexpr double far_corner = 3;  // corners off where their creases were found to meet
 
   void move_vertices();
   void split();
@@ -316,7 +317,9 @@ void Sharpening::place_corners() {
       const std::vector<Plane> planes = parts_around(v, around);
       if (planes.size() < 3) continue;
       const Point p = mesh_.positions[v].cast<double>(), corner = meet(p, planes);
-      if ((corner - p).norm() < far * chamfers_.edge()) mesh_.positions[v] = corner.cast<float>();
+      if ((corner - p).norm() < far_corner * chamfers_.edge()) {
+        mesh_.positions[v] = corner.cast<float>();
+      }
     }
   });
 }

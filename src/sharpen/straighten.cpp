@@ -126,10 +126,13 @@ class Mover {
 
 }  // namespace
 
-void straighten_lines(Mesh& mesh, const FeatureLines& lines, const Context& context) {
+void straighten_lines(Mesh& mesh, const FeatureLines& lines, Corners corners,
+                      const Context& context) {
   const double reach = 4 * edge_lengths(mesh).mean;
   Mover mover(mesh, context);
-  for (const Index v : lines.corners) mover.move(v, mover.where_planes_meet(v));
+  if (corners == Corners::move) {
+    for (const Index v : lines.corners) mover.move(v, mover.where_planes_meet(v));
+  }
   for (std::size_t line = 0; line < lines.size(); ++line) {
     const std::span<const Index> vertices(lines.vertices.data() + lines.begin(line),
                                           lines.end(line) - lines.begin(line));
