@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "sharpen/chamfered_part.h"
 #include "sharpen/join_corners.h"
 #include "sharpen/noisy_lines.h"
 #include "sharpen/noisy_part.h"

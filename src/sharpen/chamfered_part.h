@@ -1,0 +1,13 @@
+#pragma once
+
+#include "meshgrain/context.h"
+#include "meshgrain/mesh.h"
+
+namespace meshgrain {
+
+/// Whether hardly anything of a surface is not smooth but chamfers about as narrow as its
+/// triangles. Marching cubes leave such of all sharp edges, as of each cell of their grid they only
+/// look at the corners. `sample` is some of the surface, and tells most others at once.
+bool is_chamfered_part(const Mesh& triangles, const Mesh& sample, const Context& context);
+
+}  // namespace meshgrain
