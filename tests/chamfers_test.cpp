@@ -2,12 +2,15 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "finish/crossings.h"
 #include "kept_creases.h"
 #include "made_volume.h"
+#include "mesh/border.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
 #include "meshgrain/statistics.h"
@@ -132,6 +135,29 @@ TEST(Chamfers, SurfacesDoNotPassThroughEachOther) {
   for (const auto& [f, g] : find_crossings(surface, Context())) {
     EXPECT_LE(penetration(surface, f, g), 0.06 * edge);
   }
+}
+
+/// The places of its edges.
+std::set<std::array<std::array<float, 3>, 2>> border_of(const Mesh& mesh) {
+  std::set<std::array<std::array<float, 3>, 2>> result;
+  for (const auto& [a, b] : border_edges(mesh)) {
+    const Vec3 &p = mesh.positions[a], &q = mesh.positions[b];
+    result.insert({std::array{p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z()}});
+  }
+  return result;
+}
+
+/// Of a bar that reaches out of the grid at both ends: its edges end there.
+TEST(Chamfers, BordersStayAsTheyAre) {
+  const auto bar = [](const Point& p) { return box(askew.transpose() * p, {0.4, 0.3, 3}); };
+  const Mesh before = made::sampled_on_grid(bar, 60);
+  Mesh after = before;
+  ASSERT_EQ(sharpen(after, 0.05, Context()), Blur::chamfers);
+  EXPECT_EQ(border_of(after), border_of(before));
+  RemeshOptions options;
+  options.face_count = 1000;
+  options.lock_borders = true;
+  EXPECT_EQ(border_of(remesh(before, options).mesh), border_of(before));
 }
 
 TEST(Chamfers, DoNotDependOnThreads) {

@@ -37,20 +37,6 @@ Point meet(const Point& p, std::span<const Plane> planes) {
   return p + matrix.ldlt().solve(right);
 }
 
-/// The vertices at which only one of the edges ends.
-std::size_t count_ends(std::span<const Edge> edges) {
-  std::vector<Index> ends;
-  for (const Edge& edge : edges) ends.insert(ends.end(), edge.begin(), edge.end());
-  std::ranges::sort(ends);
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < ends.size();) {
-    const std::size_t first = k;
-    while (k < ends.size() && ends[k] == ends[first]) ++k;
-    count += k == first + 1;
-  }
-  return count;
-}
-
 /// Whether two parts are the sides of a wedge so sharp that where it ends, thinner than a cell of
 /// the grid, they tell nothing.
 bool is_thin(std::span<const Plane> planes) {
@@ -70,8 +56,11 @@ class Sharpening {
         before_(mesh),
         context_(context),
         chamfers_(before_, edges, context),
+        rim_(rim_edges(mesh, context)),
+        stays_(mark_ends(rim_, mesh.positions.size())),
         is_on_(mesh.positions.size(), 0) {
     move_vertices();
+    end_at_rim();
     split();
     find_parts_of_faces();
     place_corners();
@@ -80,6 +69,9 @@ class Sharpening {
   }
 
   std::vector<Edge> creases() const;
+
+  /// How many vertices inside have only one of the edges.
+  std::size_t loose_ends(std::span<const Edge> creases) const;
 
   /// Which share of the vertices on creases had to go back to where they were.
   double share_put_back() const {
@@ -94,6 +86,7 @@ class Sharpening {
   static constexpr double far_corner = 3;  // corners off where their creases were found to meet
 
   void move_vertices();
+  void end_at_rim();
   void split();
   void find_parts_of_faces();
   void place_corners();
@@ -110,6 +103,8 @@ class Sharpening {
   const Mesh before_;
   const Context& context_;
   const Chamfers chamfers_;
+  const std::vector<Edge> rim_;
+  std::vector<std::uint8_t> stays_;  // of each vertex: those of the rim do
   std::vector<std::uint8_t> is_on_;  // a crease, of each vertex
   std::vector<Vec3> origins_;        // of each vertex, on the surface as it was
   std::vector<Index> part_of_;       // of each face a vertex of its part
@@ -127,6 +122,19 @@ std::vector<Edge> Sharpening::creases() const {
   return result;
 }
 
+std::size_t Sharpening::loose_ends(std::span<const Edge> creases) const {
+  std::vector<Index> ends;
+  for (const Edge& edge : creases) ends.insert(ends.end(), edge.begin(), edge.end());
+  std::ranges::sort(ends);
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < ends.size();) {
+    const std::size_t first = k;
+    while (k < ends.size() && ends[k] == ends[first]) ++k;
+    count += k == first + 1 && !stays_[ends[first]];
+  }
+  return count;
+}
+
 /// Those of chamfers onto their parts, and of those near to a crease the nearest ones onto it.
 void Sharpening::move_vertices() {
   struct Move {
@@ -137,7 +145,7 @@ void Sharpening::move_vertices() {
   std::vector<Move> moves(count);
   context_.for_ranges(count, grain, [&](std::size_t begin, std::size_t end) {
     for (auto v = static_cast<Index>(begin); v < end; ++v) {
-      if (!chamfers_.has_part(v)) continue;
+      if (!chamfers_.has_part(v) || stays_[v]) continue;
       const Point p = chamfers_.position(v);
       const Plane own = chamfers_.plane(v);
       const Point up = -own.height(p) * own.normal;
@@ -164,6 +172,19 @@ void Sharpening::move_vertices() {
       is_on_[v] = 1;
     }
   });
+}
+
+/// Creases at the nearer end of each edge of it that they would cross: no vertex may be put in
+/// there.
+void Sharpening::end_at_rim() {
+  for (const auto& [a, b] : rim_) {
+    if (!is_crossed(a, b)) continue;
+    const std::array planes{chamfers_.plane(a), chamfers_.plane(b)};
+    const auto off = [&](Index v) {
+      return (meet(chamfers_.position(v), planes) - chamfers_.position(v)).norm();
+    };
+    is_on_[off(b) < off(a) ? b : a] = 1;
+  }
 }
 
 /// Edges that a crease crosses, and faces in which three meet.
@@ -203,6 +224,7 @@ void Sharpening::split() {
           std::array{chamfers_.plane(a), chamfers_.plane(b)});
   }
   is_on_.resize(mesh_.positions.size(), 1);
+  stays_.resize(mesh_.positions.size(), 0);
 }
 
 /// A face is of the part of its corners that are not on a crease; one that has none is of that of a
@@ -272,7 +294,7 @@ void Sharpening::place_corners() {
   const VertexFaces around = vertex_faces(mesh_, context_);
   context_.for_ranges(mesh_.positions.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (auto v = static_cast<Index>(begin); v < end; ++v) {
-      if (!is_on_[v]) continue;
+      if (!is_on_[v] || stays_[v]) continue;
       const std::vector<Plane> planes = parts_around(v, around);
       if (planes.size() < 3) continue;
       const Point p = mesh_.positions[v].cast<double>(), corner = meet(p, planes);
@@ -296,7 +318,7 @@ void Sharpening::space_out() {
     std::vector<Vec3> places = mesh_.positions;
     context_.for_ranges(places.size(), grain, [&](std::size_t begin, std::size_t end) {
       for (auto v = static_cast<Index>(begin); v < end; ++v) {
-        if (beside[v].size() != 2) continue;
+        if (beside[v].size() != 2 || stays_[v]) continue;
         const Vec3 between = (mesh_.positions[beside[v][0]] + mesh_.positions[beside[v][1]]) / 2;
         const Point p = mesh_.positions[v].cast<double>();
         const Point to = meet((p + between.cast<double>()) / 2, parts_around(v, around));
@@ -337,7 +359,7 @@ std::vector<Edge> sharpen_chamfers(Mesh& triangles, double shortest, const Conte
   // Those of a part end in others. In parts it was one of 250 edges that did not, in sculptures one
   // of 70 and more, in shapes with wider roundings one of 30.
   constexpr std::size_t few = 100;
-  if (few * count_ends(creases) > creases.size()) creases.clear();
+  if (few * sharpening.loose_ends(creases) > creases.size()) creases.clear();
   return creases;
 }
 
