@@ -190,7 +190,7 @@ class Pipeline {
   bool may_leave_out_creases() const;
   /// Whether there are more lines than edges that could follow them, as where each facet of a
   /// twisted bar or a thin hair counts as a crease.
-  bool have_no_room() const;
+  bool lines_have_no_room() const;
   /// What there is with borders that stay divided into edges as long as faces, where faces that
   /// meet far longer ones are folded. Returns whether that is better.
   bool try_divided_borders(const Flaws& before);

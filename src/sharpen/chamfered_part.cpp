@@ -7,7 +7,6 @@
 #include "features/mechanical_creases.h"
 #include "mesh/border.h"
 #include "sharpen/chamfers.h"
-#include "sharpen/sample_patches.h"
 
 namespace meshgrain {
 namespace {
@@ -39,7 +38,7 @@ RoughVertices rough_vertices(const Mesh& triangles, const Context& context) {
     return flag([&](Index v) { return is_flagged(v) || chamfers.any_beside(v, is_flagged); });
   };
   const auto at_crease = flag([&](Index v) {
-    return chamfers.any_beside(v, [&](Index w) { return chamfers.part(v, w); });
+    return chamfers.any_beside(v, [&](Index w) { return chamfers.meet_in_crease(v, w); });
   });
   const Flags beside_crease = grown(at_crease);
   // At a rim, such as a sample has, too little is around.
@@ -55,7 +54,8 @@ RoughVertices rough_vertices(const Mesh& triangles, const Context& context) {
 
 }  // namespace
 
-bool is_chamfered_part(const Mesh& triangles, const Mesh& sample, const Context& context) {
+bool is_chamfered_part(const Mesh& triangles, std::span<const Mesh> samples,
+                       const Context& context) {
   // In parts without noise .83 to 1, in sculptures and scans at most .65.
   constexpr double least = 0.8, least_of_sample = 0.6;
   constexpr std::size_t telling = 100;  // vertices
@@ -63,13 +63,11 @@ bool is_chamfered_part(const Mesh& triangles, const Mesh& sample, const Context&
     return static_cast<double>(rough.at_creases) /
            static_cast<double>(std::max<std::size_t>(rough.all, 1));
   };
-  const auto tells = [&](const Mesh& some) {
-    const RoughVertices rough = rough_vertices(some, context);
-    return rough.all >= telling && share(rough) < least_of_sample;
-  };
-  const Mesh less = sample_patches(sample, 16, 250, context);
-  if (tells(less)) return false;
-  if (sample.faces.size() < triangles.faces.size() && tells(sample)) return false;
+  for (const Mesh& sample : samples) {
+    if (sample.faces.size() == triangles.faces.size()) break;  // what is all of it comes next
+    const RoughVertices rough = rough_vertices(sample, context);
+    if (rough.all >= telling && share(rough) < least_of_sample) return false;
+  }
   if (share(rough_vertices(triangles, context)) < least) return false;
   const RimAndSharpEdges edges = rim_and_sharp_edges(triangles, flat_degrees, context);
   return mechanical_creases(triangles, edges, context).empty();

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
 
@@ -7,7 +9,9 @@ namespace meshgrain {
 
 /// Whether hardly anything of a surface is not smooth but chamfers about as narrow as its
 /// triangles. Marching cubes leave such of all sharp edges, as of each cell of their grid they only
-/// look at the corners. `sample` is some of the surface, and tells most others at once.
-bool is_chamfered_part(const Mesh& triangles, const Mesh& sample, const Context& context);
+/// look at the corners. `samples` are some of the surface and more of it, and tell most others at
+/// once.
+bool is_chamfered_part(const Mesh& triangles, std::span<const Mesh> samples,
+                       const Context& context);
 
 }  // namespace meshgrain

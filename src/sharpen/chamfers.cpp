@@ -20,7 +20,7 @@ constexpr double radians(double degrees) {
 
 }  // namespace
 
-bool make_crease(const Plane& a, const Plane& b) {
+bool meet_in_crease(const Plane& a, const Plane& b) {
   static const double least = std::cos(radians(30));
   return a.normal.dot(b.normal) < least;
 }

@@ -17,7 +17,7 @@ struct Plane {
 };
 
 /// Whether surfaces that touch these planes would meet in a crease.
-bool make_crease(const Plane& a, const Plane& b);
+bool meet_in_crease(const Plane& a, const Plane& b);
 
 /// Where a surface is smooth, and of which smooth part each vertex in between is: of chamfers that
 /// are about as narrow as the triangles the vertices of one side are of one part, and those of the
@@ -39,8 +39,8 @@ class Chamfers {
   Eigen::Vector3d position(Index v) const { return mesh_.positions[v].cast<double>(); }
 
   /// Whether two vertices are of parts that would meet in a crease.
-  bool part(Index a, Index b) const {
-    return has_part(a) && has_part(b) && make_crease(plane(a), plane(b));
+  bool meet_in_crease(Index a, Index b) const {
+    return has_part(a) && has_part(b) && meshgrain::meet_in_crease(plane(a), plane(b));
   }
 
   /// Of each vertex beside v; of most twice, as they are in two faces.

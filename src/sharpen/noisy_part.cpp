@@ -10,7 +10,6 @@
 #include "meshgrain/surface.h"
 #include "sharpen/crease_net.h"
 #include "sharpen/normal_filter.h"
-#include "sharpen/sample_patches.h"
 
 namespace meshgrain {
 namespace {
@@ -66,9 +65,9 @@ bool bends_evenly(const Mesh& triangles) {
   return deviation < most * height;
 }
 
-/// Of a sample, which changes. The creases of a part are there long before all of the noise is out:
+/// Of a sample. The creases of a part are there long before all of the noise is out:
 /// where there are hardly any then, they need not be exact.
-CreaseLengths lengths_without_noise(Mesh& sample, const Context& context) {
+CreaseLengths lengths_without_noise(Mesh sample, const Context& context) {
   constexpr int first_look = 3;       // after so many rounds, where parts have more than twice as
   constexpr double hopeless = 0.125;  // much of clear creases as of doubtful ones
   NormalFilter filter(sample, NormalFilter::Border::moves, context);
@@ -83,18 +82,16 @@ CreaseLengths lengths_without_noise(Mesh& sample, const Context& context) {
 
 }  // namespace
 
-bool is_noisy_part(const Mesh& triangles, const Mesh& sample, const Context& context) {
-  if (bends_evenly(sample) || !may_be_noisy(sample, context)) return false;
+bool is_noisy_part(const Mesh& triangles, std::span<const Mesh, 2> samples,
+                   const Context& context) {
+  const Mesh& less = samples[0];
+  const Mesh& more = samples[1];
+  if (bends_evenly(more) || !may_be_noisy(more, context)) return false;
   constexpr double margin = 0.75;
-  Mesh less = sample_patches(sample, 16, 250, context);
   const CreaseLengths hint = lengths_without_noise(less, context);
   if (hint.clear < margin * hint.doubtful) return false;
-  const bool is_whole = less.faces.size() == sample.faces.size();
-  CreaseLengths found = hint;
-  if (!is_whole) {
-    Mesh all = sample;
-    found = lengths_without_noise(all, context);
-  }
+  const bool is_all = less.faces.size() == more.faces.size();
+  const CreaseLengths found = is_all ? hint : lengths_without_noise(more, context);
   if (found.clear <= margin * clearly * found.doubtful) return false;
   // Noise leaves few edges as sharp as creases: else these are there without it, or it is a
   // sculpture with few large faces.

@@ -15,11 +15,14 @@
 namespace meshgrain {
 namespace {
 
-/// Some of the surface tells at once that most sculptures and scans are none.
+/// Some of the surface tells at once that most scans are no part, and less of it that most
+/// sculptures are none.
 Blur blur_of(const Mesh& triangles, const Context& context) {
-  const Mesh sample = sample_patches(triangles, 32, 500, context);
-  if (is_chamfered_part(triangles, sample, context)) return Blur::chamfers;
-  if (is_noisy_part(triangles, sample, context)) return Blur::noise;
+  Mesh more = sample_patches(triangles, 32, 500, context);
+  Mesh less = sample_patches(more, 16, 250, context);
+  const std::array samples{std::move(less), std::move(more)};
+  if (is_chamfered_part(triangles, samples, context)) return Blur::chamfers;
+  if (is_noisy_part(triangles, samples, context)) return Blur::noise;
   return Blur::none;
 }
 

@@ -94,10 +94,10 @@ class Sharpening {
   void keep_apart();
 
   bool is_crossed(Index a, Index b) const {
-    return !is_on_[a] && !is_on_[b] && chamfers_.part(a, b);
+    return !is_on_[a] && !is_on_[b] && chamfers_.meet_in_crease(a, b);
   }
-  Index part_beside(Index f, const VertexFaces& around) const;
-  std::vector<Plane> parts_around(Index v, const VertexFaces& around) const;
+  Index part_beside(Index f) const;
+  std::vector<Plane> parts_around(Index v) const;
 
   Mesh& mesh_;
   const Mesh before_;
@@ -106,6 +106,7 @@ class Sharpening {
   const std::vector<Edge> rim_;
   std::vector<std::uint8_t> stays_;  // of each vertex: those of the rim do
   std::vector<std::uint8_t> is_on_;  // a crease, of each vertex
+  VertexFaces around_;               // once all are split
   std::vector<Vec3> origins_;        // of each vertex, on the surface as it was
   std::vector<Index> part_of_;       // of each face a vertex of its part
   std::size_t put_back_ = 0;
@@ -115,7 +116,7 @@ std::vector<Edge> Sharpening::creases() const {
   const auto is_crease = [&](const InnerEdge& e) {
     const Index a = part_of_[e.left], b = part_of_[e.right];
     return is_on_[e.ends[0]] && is_on_[e.ends[1]] && a != no_index && b != no_index &&
-           chamfers_.part(a, b);
+           chamfers_.meet_in_crease(a, b);
   };
   std::vector<Edge> result;
   for (const InnerEdge& e : inner_edges(mesh_, is_crease, context_)) result.push_back(e.ends);
@@ -153,7 +154,7 @@ void Sharpening::move_vertices() {
         mesh_.positions[v] = (p + up).cast<float>();
       }
       chamfers_.each_beside(v, [&](Index w) {
-        if (!chamfers_.part(v, w)) return;
+        if (!chamfers_.meet_in_crease(v, w)) return;
         const Point to = meet(p, std::array{own, chamfers_.plane(w)});
         const double way = (to - p).norm();
         if (way < near * chamfers_.edge() && way < moves[v].way) moves[v] = {way, to};
@@ -162,7 +163,8 @@ void Sharpening::move_vertices() {
   });
   const auto is_nearest = [&](Index v) {
     return !chamfers_.any_beside(v, [&](Index w) {
-      return chamfers_.part(v, w) && std::pair(moves[w].way, w) < std::pair(moves[v].way, v);
+      return chamfers_.meet_in_crease(v, w) &&
+             std::pair(moves[w].way, w) < std::pair(moves[v].way, v);
     });
   };
   context_.for_ranges(count, grain, [&](std::size_t begin, std::size_t end) {
@@ -225,6 +227,7 @@ void Sharpening::split() {
   }
   is_on_.resize(mesh_.positions.size(), 1);
   stays_.resize(mesh_.positions.size(), 0);
+  around_ = vertex_faces(mesh_, context_);
 }
 
 /// A face is of the part of its corners that are not on a crease; one that has none is of that of a
@@ -238,12 +241,11 @@ void Sharpening::find_parts_of_faces() {
     }
     if (part_of_[f] == no_index) open.push_back(f);
   }
-  const VertexFaces around = vertex_faces(mesh_, context_);
   while (!open.empty()) {
     std::vector<std::pair<Index, Index>> found;
     std::vector<Index> still_open;
     for (const Index f : open) {
-      const Index part = part_beside(f, around);
+      const Index part = part_beside(f);
       if (part != no_index) {
         found.emplace_back(f, part);
       } else {
@@ -257,14 +259,14 @@ void Sharpening::find_parts_of_faces() {
 }
 
 /// The one that looks most the way that the face does.
-Index Sharpening::part_beside(Index f, const VertexFaces& around) const {
+Index Sharpening::part_beside(Index f) const {
   const auto c = std::as_const(mesh_.faces)[f];
   const auto at = [&](std::size_t k) -> Point { return mesh_.positions[c[k]].cast<double>(); };
   const Point normal = (at(1) - at(0)).cross(at(2) - at(0));
   Index part = no_index;
   double best = -std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < 3; ++k) {
-    for (const Index g : around[c[k]]) {
+    for (const Index g : around_[c[k]]) {
       const auto other = std::as_const(mesh_.faces)[g];
       const bool is_beside = corner_of(other, c[(k + 1) % 3]) < other.size();
       if (part_of_[g] == no_index || !is_beside) continue;
@@ -278,12 +280,12 @@ Index Sharpening::part_beside(Index f, const VertexFaces& around) const {
 }
 
 /// Planes that touch the parts around a vertex, one of those that would meet in no crease.
-std::vector<Plane> Sharpening::parts_around(Index v, const VertexFaces& around) const {
+std::vector<Plane> Sharpening::parts_around(Index v) const {
   std::vector<Plane> planes;
-  for (const Index f : around[v]) {
+  for (const Index f : around_[v]) {
     if (part_of_[f] == no_index) continue;
     const Plane plane = chamfers_.plane(part_of_[f]);
-    const auto differs = [&](const Plane& other) { return make_crease(plane, other); };
+    const auto differs = [&](const Plane& other) { return meet_in_crease(plane, other); };
     if (std::ranges::all_of(planes, differs)) planes.push_back(plane);
   }
   return planes;
@@ -291,11 +293,10 @@ std::vector<Plane> Sharpening::parts_around(Index v, const VertexFaces& around) 
 
 /// Vertices on creases around which three parts or more meet.
 void Sharpening::place_corners() {
-  const VertexFaces around = vertex_faces(mesh_, context_);
   context_.for_ranges(mesh_.positions.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (auto v = static_cast<Index>(begin); v < end; ++v) {
       if (!is_on_[v] || stays_[v]) continue;
-      const std::vector<Plane> planes = parts_around(v, around);
+      const std::vector<Plane> planes = parts_around(v);
       if (planes.size() < 3) continue;
       const Point p = mesh_.positions[v].cast<double>(), corner = meet(p, planes);
       if ((corner - p).norm() < far_corner * chamfers_.edge()) {
@@ -313,7 +314,6 @@ void Sharpening::space_out() {
     beside[a].push_back(b);
     beside[b].push_back(a);
   }
-  const VertexFaces around = vertex_faces(mesh_, context_);
   for (int round = 0; round < rounds; ++round) {
     std::vector<Vec3> places = mesh_.positions;
     context_.for_ranges(places.size(), grain, [&](std::size_t begin, std::size_t end) {
@@ -321,7 +321,7 @@ void Sharpening::space_out() {
         if (beside[v].size() != 2 || stays_[v]) continue;
         const Vec3 between = (mesh_.positions[beside[v][0]] + mesh_.positions[beside[v][1]]) / 2;
         const Point p = mesh_.positions[v].cast<double>();
-        const Point to = meet((p + between.cast<double>()) / 2, parts_around(v, around));
+        const Point to = meet((p + between.cast<double>()) / 2, parts_around(v));
         if ((to - p).norm() < chamfers_.edge()) places[v] = to.cast<float>();
       }
     });
