@@ -37,7 +37,7 @@ struct SmoothOptions {
   double fit = 0;
   /// The mesh is only meant to cover a part of the surface, and changes little: no vertex is held
   /// out at the ends of the surface, faces that pass through each other are not parted, and none is
-  /// brought off another side of it.
+  /// brought off another side of it. Its corners, its rim among them, stay exactly where they are.
   bool is_part = false;
   /// Faces that are still bad once each vertex was tried are mended together with those around
   /// them, which takes long.

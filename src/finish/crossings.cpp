@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -318,14 +319,31 @@ std::vector<std::array<Index, 2>> find_crossings(const Mesh& mesh, const Context
   return result;
 }
 
-std::size_t count_crossings(const Mesh& mesh, const Eigen::AlignedBox3f& box,
-                            const Context& context) {
-  Mesh near;
-  near.positions = mesh.positions;
-  for (Index f = 0; f < mesh.faces.size(); ++f) {
-    if (face_box(mesh, f).intersects(box)) near.faces.push_back(mesh.faces[f]);
+std::size_t count_crossings_of(const Mesh& mesh, std::span<const Index> some,
+                               const Context& context) {
+  std::vector<Eigen::AlignedBox3f> boxes;
+  Eigen::AlignedBox3f whole;
+  for (const Index f : some) {
+    boxes.push_back(face_box(mesh, f));
+    whole.extend(boxes.back());
   }
-  return find_crossings(near, context).size();
+  constexpr std::size_t grain = 4096;
+  std::atomic<std::size_t> count = 0;
+  context.for_ranges(mesh.faces.size(), grain, [&](std::size_t begin, std::size_t end) {
+    std::size_t here = 0;
+    for (auto g = static_cast<Index>(begin); g < end; ++g) {
+      const Eigen::AlignedBox3f box = face_box(mesh, g);
+      if (!box.intersects(whole)) continue;
+      // Pairs of two of them are the second one's to count.
+      const bool is_one_of_them = std::ranges::binary_search(some, g);
+      for (std::size_t k = 0; k < some.size(); ++k) {
+        if (is_one_of_them && some[k] >= g) break;
+        here += boxes[k].intersects(box) && penetration_of_near(mesh, some[k], g) > 0;
+      }
+    }
+    count += here;
+  });
+  return count;
 }
 
 }  // namespace meshgrain

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "meshgrain/context.h"
@@ -21,9 +22,9 @@ double penetration_of_near(const Mesh& mesh, Index f, Index g);
 /// All pairs of faces that pass through each other, the lower number first, in increasing order.
 std::vector<std::array<Index, 2>> find_crossings(const Mesh& mesh, const Context& context);
 
-/// How many there are of them between the faces whose boxes meet this one.
-std::size_t count_crossings(const Mesh& mesh, const Eigen::AlignedBox3f& box,
-                            const Context& context);
+/// How many there are of them with one or both of `some` faces, which increase.
+std::size_t count_crossings_of(const Mesh& mesh, std::span<const Index> some,
+                               const Context& context);
 
 /// Where there are so many for each face, a mesh is crumpled: far fewer faces were asked for than
 /// its topology needs, and nothing can be done about them.

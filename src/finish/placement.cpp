@@ -10,11 +10,7 @@ Placement::Placement(Extraction& extraction, const Mesh& surface, const VertexFa
       projector_(surface, around_surface, graph),
       rails_(extraction, lines, context),
       chords_(extraction.mesh, extraction.line_edges, rails_),
-      tether_(extraction.mesh.positions.size(), no_index) {
-  for (const Index v : extraction.corners) {
-    extraction.mesh.positions[v] = surface.positions[extraction.nodes[v]];
-  }
-}
+      tether_(extraction.mesh.positions.size(), no_index) {}
 
 Vec3 Placement::place(const Vec3& p, std::size_t v) {
   if (is_fixed(v)) return extraction_.mesh.positions[v];

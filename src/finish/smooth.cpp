@@ -154,6 +154,12 @@ Smoother::Smoother(Extraction& extraction, const Mesh& surface, const VertexFace
   });
   normals_.resize(mesh_.positions.size());
   touches_.resize(mesh_.positions.size());
+  // The corners of a part are its rim as well, which has to fit what is around it.
+  if (!options.is_part) {
+    for (const Index v : extraction.corners) {
+      mesh_.positions[v] = surface.positions[extraction.nodes[v]];
+    }
+  }
   previous_ = mesh_.positions;
   if (start == Start::as_it_is) {
     placement_.go_around(around_);

@@ -1,6 +1,5 @@
 #include "finish/untwist.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdint>
 #include <utility>
@@ -126,16 +125,12 @@ class Untwisting {
     context_.check();
     if (tries_left_ == 0 || !is_twisted(f)) return;
     const Place place = around(f, rings, price);
-    Eigen::AlignedBox3f box;
-    for (const Index g : place.faces) box.extend(face_box(mesh_, g));
-    box.extend(box.min() - Vec3::Constant(place.edge))
-        .extend(box.max() + Vec3::Constant(place.edge));
-    const std::size_t crossings = count_crossings(mesh_, box, context_);
+    const std::size_t crossings = count_crossings_of(mesh_, place.faces, context_);
     const std::size_t twisted = count_twisted(place);
     move(place);
     const std::size_t left = count_twisted(place);
     if (left < twisted &&
-        count_crossings(mesh_, box, context_) <= crossings + price * (twisted - left)) {
+        count_crossings_of(mesh_, place.faces, context_) <= crossings + price * (twisted - left)) {
       return;
     }
     for (std::size_t k = 0; k < place.vertices.size(); ++k) {

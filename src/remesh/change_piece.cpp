@@ -1,22 +1,13 @@
 #include "remesh/change_piece.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 
 #include "finish/crossings.h"
 
 namespace meshgrain {
-namespace {
-
-Eigen::AlignedBox3f box_of(const Extraction& part) {
-  Eigen::AlignedBox3f box;
-  for (const Vec3& p : part.mesh.positions) box.extend(p);
-  return box;
-}
-
-}  // namespace
 
 bool is_manifold(const Piece& piece, const ExtractionMap& map) {
   std::vector<std::uint8_t> seen(piece.vertices.size(), 0);
@@ -38,11 +29,15 @@ std::vector<Index> rim_sources(const Piece& piece, const ExtractionMap& map,
 bool keep_if_apart(Extraction& whole, const Piece& piece, const Extraction& changed,
                    const std::vector<Index>& sources, const Context& context) {
   Extraction result = put_back(whole, piece, changed, sources);
-  const Eigen::AlignedBox3f box = box_of(piece.extraction).merged(box_of(changed));
-  const auto crossings = [&](const Extraction& extraction) {
-    return count_crossings(extraction.mesh, box, context);
-  };
-  if (crossings(result) > crossings(whole)) return false;
+  std::vector<Index> before = piece.faces, after(changed.mesh.faces.size());
+  std::ranges::sort(before);
+  // put_back() adds them to the faces that stay.
+  const std::size_t stay = result.mesh.faces.size() - after.size();
+  std::iota(after.begin(), after.end(), static_cast<Index>(stay));
+  if (count_crossings_of(result.mesh, after, context) >
+      count_crossings_of(whole.mesh, before, context)) {
+    return false;
+  }
   whole = std::move(result);
   return true;
 }
