@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "finish/crossings.h"
 #include "kept_creases.h"
@@ -117,6 +119,49 @@ TEST(Chamfers, AllElseStaysAsItIs) {
     Mesh part = sample_shape(name);
     EXPECT_EQ(sharpen(part, 0.05, Context()), Blur::none) << name;
   }
+}
+
+/// A ring whose edges are rounded by three faces each, as CAD models have them: among the few large
+/// faces of its sides, most of its vertices are there.
+TEST(Chamfers, RoundedEdgesOfModelsStayAsTheyAre) {
+  constexpr std::size_t around = 160;
+  constexpr int faces = 3;
+  constexpr float middle = 0.75f, half_width = 0.25f, half_height = 0.2f, radius = 0.03f;
+  constexpr float quarter = std::numbers::pi_v<float> / 2;
+  std::vector<std::array<float, 2>> profile;
+  for (int corner = 0; corner < 4; ++corner) {
+    const float right = corner == 0 || corner == 3 ? 1 : -1, up = corner < 2 ? 1 : -1;
+    for (int k = 0; k <= faces; ++k) {
+      const float angle = quarter * (static_cast<float>(corner) + static_cast<float>(k) / faces);
+      profile.push_back({middle + right * (half_width - radius) + radius * std::cos(angle),
+                         up * (half_height - radius) + radius * std::sin(angle)});
+    }
+    for (int k = -1; k <= 1; ++k) {
+      const float along = 0.5f * static_cast<float>(k);
+      profile.push_back(corner % 2 == 0
+                            ? std::array{middle - right * along * half_width, up * half_height}
+                            : std::array{middle + right * half_width, -up * along * half_height});
+    }
+  }
+  Mesh ring;
+  for (const auto& [r, z] : profile) {
+    for (std::size_t k = 0; k < around; ++k) {
+      const float angle = 4 * quarter * static_cast<float>(k) / around;
+      ring.positions.push_back({r * std::cos(angle), r * std::sin(angle), z});
+    }
+  }
+  const auto at = [&](std::size_t i, std::size_t k) {
+    return static_cast<Index>(i % profile.size() * around + k % around);
+  };
+  for (std::size_t i = 0; i < profile.size(); ++i) {
+    for (std::size_t k = 0; k < around; ++k) {
+      ring.faces.push_back({at(i, k), at(i, k + 1), at(i + 1, k + 1)});
+      ring.faces.push_back({at(i, k), at(i + 1, k + 1), at(i + 1, k)});
+    }
+  }
+  Mesh after = ring;
+  EXPECT_EQ(sharpen(after, 0.05, Context()), Blur::none);
+  EXPECT_EQ(after.positions, ring.positions);
 }
 
 /// A column that hardly touches a wall: in the gap beside that they are nearer to each other than

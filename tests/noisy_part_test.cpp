@@ -94,6 +94,15 @@ TEST(NoisyPart, AllElseStaysAsItIs) {
   EXPECT_EQ(sharpen(part, output_edge(part, 2000), Context()), Blur::none);
 }
 
+/// The ridges of a small sculpture are as noise would be: nothing tells them apart.
+TEST(NoisyPart, CoarseScansStayAsTheyAre) {
+  const Mesh before = scan(sample_shape("bracket", 0.6), 0.2);
+  ASSERT_LT(before.positions.size(), 2000u);
+  Mesh after = before;
+  EXPECT_EQ(sharpen(after, output_edge(before, 500), Context()), Blur::none);
+  EXPECT_EQ(after.positions, before.positions);
+}
+
 /// Few sides around a tube meet at angles that noise has, too.
 TEST(NoisyPart, CoarseTubesStayAsTheyAre) {
   constexpr std::size_t rings = 12, around = 48, across = 16;

@@ -29,7 +29,9 @@ struct Flaws {
   std::size_t all_faults = 0;  // with crossings where the surface crosses itself, too
 
   /// A mesh that is crumpled all over is too coarse for its surface, and others would be as well.
-  bool are_hopeless(std::size_t faces) const { return faults > faces / hopeless; }
+  bool are_hopeless(std::size_t faces) const {
+    return faults > faces / hopeless || all_faults > faces;
+  }
   static constexpr std::size_t hopeless = 20;  // one in so many faces
 
   bool any() const { return lost_faces > 0 || flatness > 0 || faults > 0; }

@@ -6,12 +6,30 @@
 
 #include "features/mechanical_creases.h"
 #include "mesh/border.h"
+#include "meshgrain/surface.h"
 #include "sharpen/chamfers.h"
 
 namespace meshgrain {
 namespace {
 
 constexpr std::size_t grain = 512;
+
+/// Whether hardly any of the area has far longer edges than usual: a grid samples flat sides as
+/// finely as all else, for which CAD models have a few large triangles.
+bool is_evenly_sampled(const Mesh& triangles, const Context& context) {
+  constexpr double far_longer = 3, hardly_any = 0.1;
+  const double longest = far_longer * edge_lengths(triangles, context).mean;
+  double large = 0, whole = 0;
+  for (std::size_t f = 0; f < triangles.faces.size(); ++f) {
+    const auto face = triangles.faces[f];
+    const Vec3 &a = triangles.positions[face[0]], &b = triangles.positions[face[1]],
+               &c = triangles.positions[face[2]];
+    const double area = (b - a).cross(c - a).norm();
+    whole += area;
+    if (std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()}) > longest) large += area;
+  }
+  return large <= hardly_any * whole;
+}
 
 /// How many vertices are not smooth, and how many of these lie at a crease between two smooth
 /// parts, or beside one that does.
@@ -69,7 +87,13 @@ bool is_chamfered_part(const Mesh& triangles, std::span<const Mesh> samples,
     const RoughVertices rough = rough_vertices(sample, context);
     if (rough.all >= telling && share(rough) < least_of_sample) return false;
   }
-  if (share(rough_vertices(triangles, context)) < least) return false;
+  if (!is_evenly_sampled(triangles, context)) return false;
+  const RoughVertices rough = rough_vertices(triangles, context);
+  if (share(rough) < least) return false;
+  // Bevels that most of the vertices lie on are what the part is, whatever it was sampled on.
+  constexpr double most_rough = 0.25;
+  const auto vertices = static_cast<double>(triangles.positions.size());
+  if (static_cast<double>(rough.all) > most_rough * vertices) return false;
   const RimAndSharpEdges edges = rim_and_sharp_edges(triangles, flat_degrees, context);
   return mechanical_creases(triangles, edges, context).empty();
 }

@@ -16,8 +16,10 @@ namespace meshgrain {
 namespace {
 
 /// Some of the surface tells at once that most scans are no part, and less of it that most
-/// sculptures are none.
+/// sculptures are none. Among few vertices shape and blur cannot be told apart.
 Blur blur_of(const Mesh& triangles, const Context& context) {
+  constexpr std::size_t few = 2000;
+  if (triangles.positions.size() < few) return Blur::none;
   Mesh more = sample_patches(triangles, 32, 500, context);
   Mesh less = sample_patches(more, 16, 250, context);
   const std::array samples{std::move(less), std::move(more)};
