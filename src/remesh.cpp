@@ -10,6 +10,7 @@
 #include "remesh/notes.h"
 #include "remesh/pipeline.h"
 #include "remesh/target.h"
+#include "remesh/try_without_tunnels.h"
 #include "symmetry/remesh_symmetric.h"
 
 namespace meshgrain {
@@ -104,11 +105,20 @@ void make_mesh(Pipeline& pipeline) {
   pipeline.report_fields();
 }
 
-RemeshResult remesh_as_it_is(Mesh input, const RemeshOptions& options, const Context& context) {
+Made make(Mesh input, const RemeshOptions& options, const Context& context) {
   Pipeline pipeline(input, options, context);
   prepare(pipeline, std::move(input));
+  std::vector<std::string> notes = pipeline.report().notes;
   make_mesh(pipeline);
-  return std::move(pipeline).result();
+  Faults faults = pipeline.find_faults();
+  const double side = pipeline.face_side();
+  return {std::move(pipeline).result(), std::move(faults), side, std::move(notes)};
+}
+
+RemeshResult remesh_as_it_is(Mesh input, const RemeshOptions& options, const Context& context) {
+  Made made = make(std::move(input), options, context);
+  try_without_tunnels(made, options, make, context);
+  return std::move(made.result);
 }
 
 }  // namespace

@@ -44,4 +44,15 @@ struct Flaws {
   }
 };
 
+/// Faces that are inverted, and pairs that pass through each other where the surface does not.
+struct Faults {
+  std::size_t inverted = 0, crossings = 0;
+  std::vector<Index> nodes;  // of the surface, at these faces; increasing
+
+  std::size_t count() const { return inverted + crossings; }
+  bool are_clearly_fewer_than(const Faults& other) const {
+    return inverted <= other.inverted && 2 * count() < other.count();
+  }
+};
+
 }  // namespace meshgrain

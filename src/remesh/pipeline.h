@@ -84,6 +84,10 @@ class Pipeline {
   /// Pure quads: irregular vertices that cancel each other out go.
   void untie_knots();
 
+  Faults find_faults();
+  /// The mean side of a face, in input units.
+  double face_side() const { return target_.face_side(area_) * frame_.scale; }
+
   /// If quads alone could not meet borders that stay.
   void note_odd_borders();
   /// If there are many pieces smaller than a face.
@@ -175,7 +179,7 @@ class Pipeline {
   LostSurface lost_surface() const;
   Flaws flaws(double lost_faces);
   /// Those of the faces that are farther than a face from where the surface passes through itself.
-  std::size_t count_own(std::span<const std::array<Index, 2>> crossings);
+  std::vector<std::array<Index, 2>> own(std::vector<std::array<Index, 2>> crossings);
   /// Limbs become thinner than they are, and are lost, where the rows around them are as many as
   /// at their ends: a lattice that has all its singularities there lets rows end.
   void keep_singularities_around(const std::vector<Index>& nodes);
@@ -195,7 +199,7 @@ class Pipeline {
   /// meet far longer ones are folded. Returns whether that is better.
   bool try_divided_borders(const Flaws& before);
   /// Until none are left of the flaws that there were `before`.
-  void try_other_starts(Flaws before);
+  Flaws try_other_starts(Flaws before);
   /// Irregular vertices may be the price: not for those who want fewer of them than by default.
   bool may_be_irregular() const;
   /// Whether what is wrong with the faces is to be seen, and other ones would not take too long.
@@ -283,7 +287,8 @@ class Pipeline {
   FeatureConstraints constraints_;
   std::vector<std::uint8_t> keeps_singularities_;  // the lattice; see ExtractOptions
   Extraction extraction_;
-  bool is_split_ = false;  // into the quads that are written
+  bool is_split_ = false;        // into the quads that are written
+  bool may_have_faults_ = true;  // else there are none, when all is done
 };
 
 }  // namespace meshgrain

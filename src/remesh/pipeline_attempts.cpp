@@ -13,6 +13,7 @@
 #include "mesh/border.h"
 #include "meshgrain/statistics.h"
 #include "remesh/pipeline.h"
+#include "util/sort_unique.h"
 
 namespace meshgrain {
 
@@ -47,13 +48,14 @@ Flaws Pipeline::flaws(double lost_faces) {
   constexpr float nearly_flat = 0.1f;  // beyond it a quad is as good as any
   const float flatness = std::max(0.0f, nearly_flat - least_jacobian(extraction_.mesh));
   const std::size_t inverted = flatness > 0 ? inverted_faces() : 0;
-  const auto crossings = find_crossings(extraction_.mesh, context_);
+  auto crossings = find_crossings(extraction_.mesh, context_);
+  const std::size_t all = crossings.size();
   return {lost_faces <= LostSurface::little ? 0 : lost_faces, flatness,
-          inverted + count_own(crossings), inverted + crossings.size()};
+          inverted + own(std::move(crossings)).size(), inverted + all};
 }
 
-std::size_t Pipeline::count_own(std::span<const std::array<Index, 2>> crossings) {
-  if (crossings.empty() || is_cloud_) return 0;  // of a cloud it is not known
+std::vector<std::array<Index, 2>> Pipeline::own(std::vector<std::array<Index, 2>> crossings) {
+  if (crossings.empty() || is_cloud_) return {};  // of a cloud it is not known
   const auto meeting = [](const Mesh& of, const std::array<Index, 2>& pair) {
     return face_box(of, pair[0]).intersection(face_box(of, pair[1]));
   };
@@ -69,9 +71,34 @@ std::size_t Pipeline::count_own(std::span<const std::array<Index, 2>> crossings)
     }
     crossings_of_surface_.emplace(boxes, static_cast<float>(side));
   }
-  return static_cast<std::size_t>(std::ranges::count_if(crossings, [&](const auto& pair) {
-    return !crossings_of_surface_->touches(meeting(extraction_.mesh, pair));
-  }));
+  std::erase_if(crossings, [&](const auto& pair) {
+    return crossings_of_surface_->touches(meeting(extraction_.mesh, pair));
+  });
+  return crossings;
+}
+
+Faults Pipeline::find_faults() {
+  Faults faults;
+  // Of many faces, to look for crossings as well takes too long.
+  const bool has_any =
+      may_have_faults_ && (has_few_faces() || least_jacobian(extraction_.mesh) <= 0);
+  if (!has_any) return faults;
+  const Faces& faces = extraction_.mesh.faces;
+  const auto add = [&](Index f) {
+    for (const Index v : faces[f]) faults.nodes.push_back(extraction_.nodes[v]);
+  };
+  for (Index f = 0; f < faces.size(); ++f) {
+    if (faces.degree(f) != 4 || scaled_jacobian(faces[f], extraction_.mesh.positions) > 0) continue;
+    ++faults.inverted;
+    add(f);
+  }
+  for (const auto& [f, g] : own(find_crossings(extraction_.mesh, context_))) {
+    ++faults.crossings;
+    add(f);
+    add(g);
+  }
+  sort_unique(faults.nodes);
+  return faults;
 }
 
 void Pipeline::smooth_faces() {
@@ -142,8 +169,8 @@ bool Pipeline::try_without_creases(const Flaws& before) {
   const std::size_t faces = extraction_.mesh.faces.size();
   const bool are_too_fine =
       before.faults > 0 && target_.finished_ratio(extraction_.mesh) > 1 + target_.tolerance();
-  // Where there is more than one fault a face, nothing helps.
-  if (!(before.are_hopeless(faces) || are_too_fine) || before.faults > faces) return false;
+  // Where there are more than two faults a face, nothing helps.
+  if (!(before.are_hopeless(faces) || are_too_fine) || before.faults > 2 * faces) return false;
   if (!may_leave_out_creases()) return false;
   const auto on_rim = rim_vertices(surface_, context_);
   const auto is_inside = [&](Index v) { return on_rim[v] == 0; };
@@ -193,7 +220,7 @@ bool Pipeline::mend_flaws() {
   const bool has_lost = !keeps_singularities_.empty();  // or had
   if (!left.any() || !has_lost || !is_coarse || !may_have_fine_lattice() ||
       has_branches(border_edges(surface_, context_).size())) {
-    try_other_starts(left);
+    may_have_faults_ = try_other_starts(left).faults > 0;
     return false;
   }
   take_attempt();  // nothing of it is needed any more
@@ -208,8 +235,8 @@ bool Pipeline::mend_flaws() {
   return true;
 }
 
-void Pipeline::try_other_starts(Flaws before) {
-  if (before.are_hopeless(extraction_.mesh.faces.size())) return;
+Flaws Pipeline::try_other_starts(Flaws before) {
+  if (before.are_hopeless(extraction_.mesh.faces.size())) return before;
   constexpr std::uint64_t most = 2;
   for (std::uint64_t start = 1; start <= most && before.any(); ++start) {
     Flaws now;
@@ -224,6 +251,7 @@ void Pipeline::try_other_starts(Flaws before) {
     };
     if (try_again(is_better, start_there)) before = now;
   }
+  return before;
 }
 
 void Pipeline::try_coarser_lattice() {

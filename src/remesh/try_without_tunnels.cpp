@@ -1,0 +1,68 @@
+#include "remesh/try_without_tunnels.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "tunnels/close_tunnels.h"
+
+namespace meshgrain {
+namespace {
+
+/// Borders and guides that stay, and values of vertices, are those of the surface as it is.
+bool may_close_any(const Made& made, const RemeshOptions& options) {
+  return !made.result.fields.surface.is_point_cloud() &&
+         options.graph.nodes == GraphNodes::vertices && options.smoothing > 0 &&
+         options.fields == nullptr && options.guides.empty() && !options.lock_borders &&
+         !options.sizing.is_by_value();
+}
+
+/// Whether faults are more than a few crossings.
+bool are_many(const Faults& faults, std::size_t faces) {
+  constexpr std::size_t few = 200;  // one crossing in so many faces
+  return faults.inverted > 0 || faults.crossings > faces / few;
+}
+
+/// The report of a mesh without tunnels tells of what was done before as well.
+void continue_report(RemeshReport& report, const Made& before, std::size_t closed) {
+  const RemeshReport& first = before.result.report;
+  report.input_vertices = first.input_vertices;
+  report.input_faces = first.input_faces;
+  report.stages.insert(report.stages.begin(), first.stages.begin(), first.stages.end());
+  std::vector<std::string> notes = before.notes;
+  for (std::string& note : report.notes) {
+    if (std::ranges::find(notes, note) == notes.end()) notes.push_back(std::move(note));
+  }
+  notes.push_back(fmt::format(
+      "closed {} {}: faces of this size around {} would be inverted or pass through each other",
+      closed, closed == 1 ? "tunnel" : "tunnels", closed == 1 ? "it" : "them"));
+  report.notes = std::move(notes);
+}
+
+}  // namespace
+
+void try_without_tunnels(Made& made, const RemeshOptions& options, const Make& make,
+                         const Context& context) {
+  const std::size_t faces = made.result.mesh.faces.size();
+  if (!may_close_any(made, options) || !are_many(made.faults, faces)) return;
+  const Made first = made;
+  // How many sides of faces are around the widest tunnels that are closed.
+  for (const double sides_around : {4.0, 6.0}) {
+    if (!are_many(made.faults, faces)) return;
+    Mesh surface = first.result.fields.surface;
+    const std::size_t closed =
+        close_tunnels(surface, first.faults.nodes, sides_around * first.side, context);
+    if (closed == 0) continue;
+    RemeshOptions again = options;
+    if (again.edge_length == 0 && again.face_count == 0 && again.vertex_count == 0) {
+      again.vertex_count = first.result.mesh.positions.size();
+    }
+    Made other = make(std::move(surface), again, context);
+    if (!other.faults.are_clearly_fewer_than(made.faults)) continue;
+    continue_report(other.result.report, first, closed);
+    made = std::move(other);
+  }
+}
+
+}  // namespace meshgrain

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "meshgrain/remesh.h"
+#include "remesh/flaws.h"
+
+namespace meshgrain {
+
+/// A mesh, and what was learnt while it was made.
+struct Made {
+  RemeshResult result;
+  Faults faults;
+  double side;                     // of a face, in the mean
+  std::vector<std::string> notes;  // of the input, before there were faces
+};
+
+using Make = std::function<Made(Mesh input, const RemeshOptions&, const Context&)>;
+
+/// Where faces have faults at tunnels that are hardly wider than they are, as bolt holes of a part
+/// may be, or the handles that noise leaves on a scan, what there is without these tunnels: that is
+/// kept, with a note, if it has less than half as many faults. Topology gives way to validity.
+void try_without_tunnels(Made& made, const RemeshOptions& options, const Make& make,
+                         const Context& context);
+
+}  // namespace meshgrain

@@ -1,0 +1,174 @@
+#include "tunnels/close_tunnels.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <numeric>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "mesh/keep_vertices.h"
+#include "mesh/vertex_faces.h"
+#include "tunnels/loop_search.h"
+#include "tunnels/tunnel.h"
+#include "util/edge_of.h"
+#include "util/sort_unique.h"
+
+namespace meshgrain {
+namespace {
+
+struct Loop {
+  double length;
+  std::vector<Index> vertices;
+  auto operator<=>(const Loop&) const = default;
+};
+
+struct Tunnel {
+  double loop;  // the length of a loop around it
+  Sleeve sleeve;
+};
+
+double length_of(const std::vector<Index>& loop, const Mesh& mesh) {
+  double length = 0;
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    const Vec3& next = mesh.positions[loop[(k + 1) % loop.size()]];
+    length += (mesh.positions[loop[k]] - next).norm();
+  }
+  return length;
+}
+
+/// A new vertex in the middle of a rim, joined to all of that.
+void put_lid_on(Mesh& mesh, const std::vector<Index>& rim) {
+  Vec3 middle = Vec3::Zero();
+  for (const Index v : rim) middle += mesh.positions[v] / static_cast<float>(rim.size());
+  const auto center = static_cast<Index>(mesh.positions.size());
+  mesh.positions.push_back(middle);
+  if (!mesh.values.empty()) mesh.values.push_back(mesh.values[rim[0]]);
+  for (std::size_t k = 0; k < rim.size(); ++k) {
+    mesh.faces.push_back({rim[k], rim[(k + 1) % rim.size()], center});
+  }
+}
+
+/// The edges of some faces, each once.
+std::vector<std::array<Index, 2>> edges_of(const Mesh& mesh, std::span<const Index> faces) {
+  std::vector<std::array<Index, 2>> edges;
+  for (const Index f : faces) {
+    const auto corners = mesh.faces[f];
+    for (std::size_t k = 0; k < 3; ++k) {
+      edges.push_back(edge_of(corners[k], corners[(k + 1) % 3]));
+    }
+  }
+  sort_unique(edges);
+  return edges;
+}
+
+/// Puts two lids in the place of each sleeve, and forgets marks of edges that are gone.
+void close(Mesh& mesh, std::span<const Tunnel> tunnels) {
+  std::vector<Index> gone;
+  std::vector<std::array<Index, 2>> stay;
+  for (const auto& [loop, sleeve] : tunnels) {
+    gone.insert(gone.end(), sleeve.faces.begin(), sleeve.faces.end());
+    for (const auto& rim : sleeve.rims) {
+      for (std::size_t k = 0; k < rim.size(); ++k) {
+        stay.push_back(edge_of(rim[k], rim[(k + 1) % rim.size()]));
+      }
+    }
+  }
+  std::ranges::sort(gone);
+  std::ranges::sort(stay);
+  const auto edges = edges_of(mesh, gone);
+  std::erase_if(mesh.marked_edges, [&](const auto& mark) {
+    const auto edge = edge_of(mark[0], mark[1]);
+    return std::ranges::binary_search(edges, edge) && !std::ranges::binary_search(stay, edge);
+  });
+  Faces kept;
+  kept.reserve(mesh.faces.size(), 3 * mesh.faces.size());
+  for (Index f = 0; f < mesh.faces.size(); ++f) {
+    if (!std::ranges::binary_search(gone, f)) kept.push_back(std::as_const(mesh.faces)[f]);
+  }
+  mesh.faces = std::move(kept);
+  mesh.normals.clear();
+  for (const auto& [loop, sleeve] : tunnels) {
+    for (const auto& rim : sleeve.rims) put_lid_on(mesh, rim);
+  }
+}
+
+/// The loops near some vertices that are not longer than that, the shortest first.
+std::vector<Loop> find_loops(const Mesh& mesh, const VertexFaces& around,
+                             std::span<const Index> near, double longest, const Context& context) {
+  LoopSearch search(mesh, around);
+  using Vertices = std::vector<Index>;
+  const auto look_from = [&](std::span<const Index> places, double apart, double beyond,
+                             const std::function<void(Vertices &&)>& take) {
+    std::vector<std::uint8_t> is_covered(mesh.positions.size(), 0);
+    for (const Index v : places) {
+      context.check();
+      if (is_covered[v] || around[v].empty()) continue;
+      for (Vertices& loop : search.near(v, beyond, longest)) take(std::move(loop));
+      search.each_within(apart, [&](Index w) { is_covered[w] = 1; });
+    }
+  };
+  // From a few places it shows where there are any, and from there, which are the shortest.
+  Vertices there;
+  const double far = longest / 4, close_by = longest / 32;
+  look_from(near, far, far, [&](Vertices&& loop) { there.push_back(loop.front()); });
+  sort_unique(there);
+  std::vector<Loop> loops;
+  look_from(there, close_by, 0, [&](Vertices&& loop) {
+    const double length = length_of(loop, mesh);
+    if (length <= longest) loops.push_back({length, std::move(loop)});
+  });
+  sort_unique(loops);
+  return loops;
+}
+
+/// Tunnels without a vertex in common, those of the shortest loops first.
+std::vector<Tunnel> find_tunnels(const Mesh& mesh, TunnelSearch::Kind kind,
+                                 std::span<const Index> near, double longest,
+                                 const Context& context) {
+  const VertexFaces around = vertex_faces(mesh, context);
+  SleeveCutter cutter(mesh, around);
+  TunnelSearch search(mesh, around, cutter);
+  std::vector<Tunnel> tunnels;
+  for (const Loop& loop : find_loops(mesh, around, near, longest, context)) {
+    context.check();
+    std::optional<Sleeve> sleeve = search.sleeve_around(loop.vertices, kind, longest);
+    if (!sleeve) continue;
+    cutter.cut_out(*sleeve);
+    tunnels.push_back({loop.length, std::move(*sleeve)});
+  }
+  return tunnels;
+}
+
+}  // namespace
+
+std::size_t close_tunnels(Mesh& triangles, std::span<const Index> near, double longest,
+                          const Context& context) {
+  using enum TunnelSearch::Kind;
+  std::size_t count = 0;
+  double longest_closed = 0;
+  const auto close_all = [&](TunnelSearch::Kind kind, std::span<const Index> seeds, double most) {
+    constexpr int most_rounds = 8;
+    for (int round = 0; round < most_rounds; ++round) {
+      const auto tunnels = find_tunnels(triangles, kind, seeds, most, context);
+      if (tunnels.empty()) break;
+      close(triangles, tunnels);
+      count += tunnels.size();
+      for (const Tunnel& tunnel : tunnels) longest_closed = std::max(longest_closed, tunnel.loop);
+    }
+  };
+  close_all(hollow, near, longest);
+  // Of holes alike none should stay open.
+  if (count > 0) {
+    std::vector<Index> all(triangles.positions.size());
+    std::iota(all.begin(), all.end(), Index{0});
+    close_all(hollow, all, longest_closed * (1 + 1e-3));
+  }
+  // What is left between holes side by side is a short handle, too, until these are closed.
+  close_all(handle, near, longest / 2);
+  if (count > 0) drop_unused_vertices(triangles, context);
+  return count;
+}
+
+}  // namespace meshgrain

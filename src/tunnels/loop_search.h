@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "mesh/vertex_faces.h"
+#include "meshgrain/mesh.h"
+
+namespace meshgrain {
+
+/// Looks for short loops on a surface that no disk of it fills: around tunnels, handles and limbs.
+class LoopSearch {
+ public:
+  /// Both must outlive this.
+  LoopSearch(const Mesh& triangles, const VertexFaces& around);
+
+  /// The vertices along those that come within a distance of a vertex: short ones among all of
+  /// about this length, from where they are farthest from it on. (Erickson and Whittlesey 2005,
+  /// Greedy optimal homotopy and homology generators, on as much of the surface as they need.)
+  /// Those by the vertex itself are as short as can be.
+  std::vector<std::vector<Index>> near(Index vertex, double distance, double longest);
+  /// Calls body(v) for the vertices within a distance of that where near() was last.
+  template <typename Body>
+  void each_within(double distance, const Body& body) const {
+    for (const Index v : reached_) {
+      if (distance_[v] <= distance) body(v);
+    }
+  }
+
+ private:
+  /// An edge that no shortest path takes, and the faces beside it.
+  struct Chord {
+    double loop;  // the length of the loop that it closes
+    std::array<Index, 2> ends;
+    std::array<Index, 2> sides;  // numbers of faces
+  };
+
+  void reach_from(Index start, double farthest);
+  bool is_reached(Index v) const { return round_of_[v] == round_; }
+  /// Of the edges between vertices that were reached. All that lies farther off counts as one face,
+  /// the first.
+  std::vector<Chord> chords();
+  std::vector<Index> loop_of(const Chord& chord) const;
+
+  const Mesh& mesh_;
+  const VertexFaces& around_;
+  std::uint32_t round_ = 0;
+  std::vector<std::uint32_t> round_of_;  // in which a vertex was last reached
+  std::vector<double> distance_;
+  std::vector<Index> before_;   // on the shortest path
+  std::vector<Index> reached_;  // all of this round
+  Index faces_ = 0;             // among them, and what lies farther off
+};
+
+}  // namespace meshgrain
