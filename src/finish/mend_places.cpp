@@ -29,7 +29,10 @@ class Mending {
         context_(context) {}
 
   void run() {
-    if (!options_.is_part) part_crossings();
+    if (!options_.is_part) {
+      is_crumpled_ = find_crossings(mesh_, context_).size() > mesh_.faces.size();
+      part_crossings();
+    }
     failed_slides_ = 0;
     effort_left_ = 0;
     for (const BadPlaces::Demands& demands : ever_less) {
@@ -77,9 +80,9 @@ class Mending {
   }
 
   double effort() const {
-    return options_.is_part
-               ? effort_for_a_part
-               : effort_for_a_mesh + effort_a_face * static_cast<double>(mesh_.faces.size());
+    if (options_.is_part) return effort_for_a_part;
+    const double all = effort_for_a_mesh + effort_a_face * static_cast<double>(mesh_.faces.size());
+    return is_crumpled_ ? all / 10 : all;
   }
 
   void demand(const BadPlaces::Demands& demands) {
@@ -290,6 +293,7 @@ class Mending {
   LocalSearch& search_;
   BadPlaces places_;
   const SmoothOptions& options_;
+  bool is_crumpled_ = false;  // all over, so that it is no use
   std::size_t failed_slides_ = 0;
   std::vector<Start> failed_starts_;  // of slides, with the same demands
   double effort_left_ = 0;

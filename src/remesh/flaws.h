@@ -49,9 +49,10 @@ struct Faults {
   std::size_t inverted = 0, crossings = 0;
   std::vector<Index> nodes;  // of the surface, at these faces; increasing
 
-  std::size_t count() const { return inverted + crossings; }
+  /// Less than two thirds as bad, and no more faces are inverted.
   bool are_clearly_fewer_than(const Faults& other) const {
-    return inverted <= other.inverted && 2 * count() < other.count();
+    const auto badness = [](const Faults& of) { return 10 * of.inverted + of.crossings; };
+    return inverted <= other.inverted && 3 * badness(*this) < 2 * badness(other);
   }
 };
 

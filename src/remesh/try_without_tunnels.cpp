@@ -47,13 +47,18 @@ void try_without_tunnels(Made& made, const RemeshOptions& options, const Make& m
   const std::size_t faces = made.result.mesh.faces.size();
   if (!may_close_any(made, options) || !are_many(made.faults, faces)) return;
   const Made first = made;
+  std::size_t closed_before = 0;
   // How many sides of faces are around the widest tunnels that are closed.
   for (const double sides_around : {4.0, 6.0}) {
     if (!are_many(made.faults, faces)) return;
     Mesh surface = first.result.fields.surface;
     const std::size_t closed =
         close_tunnels(surface, first.faults.nodes, sides_around * first.side, context);
-    if (closed == 0) continue;
+    constexpr double considerably = 1.1;  // else it would be about the same once more
+    const bool are_more =
+        static_cast<double>(closed) > considerably * static_cast<double>(closed_before);
+    if (!are_more) continue;
+    closed_before = closed;
     RemeshOptions again = options;
     if (again.edge_length == 0 && again.face_count == 0 && again.vertex_count == 0) {
       again.vertex_count = first.result.mesh.positions.size();

@@ -21,7 +21,7 @@ using Make = std::function<Made(Mesh input, const RemeshOptions&, const Context&
 
 /// Where faces have faults at tunnels that are hardly wider than they are, as bolt holes of a part
 /// may be, or the handles that noise leaves on a scan, what there is without these tunnels: that is
-/// kept, with a note, if it has less than half as many faults. Topology gives way to validity.
+/// kept, with a note, if it has clearly fewer faults. Topology gives way to validity.
 void try_without_tunnels(Made& made, const RemeshOptions& options, const Make& make,
                          const Context& context);
 
