@@ -360,6 +360,14 @@ TEST_F(Io, LargeObjIsReadAsASmallOne) {
                "vertex index 99999 is out of range: the file holds 60001 vertices");
 }
 
+TEST_F(Io, ObjCurvesAreNoPointClouds) {
+  const std::string points = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  EXPECT_EQ(error_of("a.obj", points + "cstype bspline\ndeg 1\ncurv 0 1 1 2\nend\n"),
+            "a.obj: has free-form curves or surfaces, but no faces");
+  EXPECT_EQ(read("b.obj", points + "p 1\np 2\np 3\n").positions.size(), 3u);
+  EXPECT_EQ(read("c.obj", points + "cstype bspline\nf 1 2 3\n").faces.size(), 1u);
+}
+
 TEST_F(Io, ObjErrorsNameTheLine) {
   EXPECT_EQ(error_of("a.obj", "v 0 0 0\nv 1 0\n"),
             "a.obj: line 2: expected coordinate z, found the end of the line");

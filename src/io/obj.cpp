@@ -45,6 +45,12 @@ class Reader {
     coordinates_.move_to(mesh_, input_);
   }
 
+  /// What free-form curves and surfaces go by is no point cloud.
+  void refuse_free_form() const {
+    if (!has_free_form_ || !mesh_.faces.empty()) return;
+    input_.fail("has free-form curves or surfaces, but no faces");
+  }
+
   /// A mesh, whose marked edges are those of lines alone.
   Mesh take() {
     // In a mesh, normals belong to corners of faces, not to vertices.
@@ -160,6 +166,8 @@ class Reader {
       const auto number = static_cast<Index>(materials_.size());
       const auto material = materials_.try_emplace(text_.rest_of_line(), number).first;
       uses_.emplace_back(mesh_.faces.size(), material->second);
+    } else if (text_.word_is("cstype")) {
+      has_free_form_ = true;
     }
   }
 
@@ -242,6 +250,7 @@ class Reader {
   CornerNormals shading_;
   std::map<std::string_view, Index> materials_;
   std::vector<std::pair<std::size_t, Index>> uses_;  // of materials, each from a face on
+  bool has_free_form_ = false;
 };
 
 }  // namespace
@@ -249,6 +258,7 @@ class Reader {
 Mesh read_obj(const Input& input) {
   Reader reader(input);
   reader.run();
+  reader.refuse_free_form();
   if (input.options().weld) reader.weld_faces();
   reader.mark_material_borders();
   reader.mark_hard_edges();

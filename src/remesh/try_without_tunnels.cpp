@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <utility>
 
@@ -47,13 +48,17 @@ void try_without_tunnels(Made& made, const RemeshOptions& options, const Make& m
   const std::size_t faces = made.result.mesh.faces.size();
   if (!may_close_any(made, options) || !are_many(made.faults, faces)) return;
   const Made first = made;
+  Eigen::AlignedBox3f box;
+  for (const Vec3& p : first.result.fields.surface.positions) box.extend(p);
+  constexpr double of_diagonal = 0.25;  // a wider tunnel is what the shape is about
+  const double longest = of_diagonal * box.diagonal().norm();
   std::size_t closed_before = 0;
   // How many sides of faces are around the widest tunnels that are closed.
   for (const double sides_around : {4.0, 6.0}) {
     if (!are_many(made.faults, faces)) return;
     Mesh surface = first.result.fields.surface;
-    const std::size_t closed =
-        close_tunnels(surface, first.faults.nodes, sides_around * first.side, context);
+    const std::size_t closed = close_tunnels(surface, first.faults.nodes,
+                                             std::min(sides_around * first.side, longest), context);
     constexpr double considerably = 1.1;  // else it would be about the same once more
     const bool are_more =
         static_cast<double>(closed) > considerably * static_cast<double>(closed_before);

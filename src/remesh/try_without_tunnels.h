@@ -19,9 +19,10 @@ struct Made {
 
 using Make = std::function<Made(Mesh input, const RemeshOptions&, const Context&)>;
 
-/// Where faces have faults at tunnels that are hardly wider than they are, as bolt holes of a part
-/// may be, or the handles that noise leaves on a scan, what there is without these tunnels: that is
-/// kept, with a note, if it has clearly fewer faults. Topology gives way to validity.
+/// Where faces have faults at tunnels that are hardly wider than they are, and far less wide than
+/// the surface, as bolt holes of a part may be, or the handles that noise leaves on a scan, what
+/// there is without these tunnels: that is kept, with a note, if it has clearly fewer faults.
+/// Topology gives way to validity.
 void try_without_tunnels(Made& made, const RemeshOptions& options, const Make& make,
                          const Context& context);
 
