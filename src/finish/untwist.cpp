@@ -66,7 +66,8 @@ class Untwisting {
   std::span<const Index> face(Index f) const { return std::as_const(mesh_.faces)[f]; }
 
   bool is_twisted(Index f) const {
-    return mesh_.faces.degree(f) == 4 && scaled_jacobian(face(f), mesh_.positions) <= 0;
+    constexpr float rounding = 1e-3f;  // of what is written
+    return mesh_.faces.degree(f) == 4 && scaled_jacobian(face(f), mesh_.positions) <= rounding;
   }
 
   std::vector<Index> twisted_quads() const {

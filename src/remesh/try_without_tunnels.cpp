@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "remesh/stages.h"
 #include "tunnels/close_tunnels.h"
 
 namespace meshgrain {
@@ -21,16 +22,14 @@ bool may_close_any(const Made& made, const RemeshOptions& options) {
 
 /// Whether faults are more than a few crossings.
 bool are_many(const Faults& faults, std::size_t faces) {
-  constexpr std::size_t few = 200;  // one crossing in so many faces
-  return faults.inverted > 0 || faults.crossings > faces / few;
+  return faults.inverted > 0 || faults.crossings > faces / Flaws::hopeless;
 }
 
-/// The report of a mesh without tunnels tells of what was done before as well.
+/// The report of a mesh without tunnels tells of the input as it was.
 void continue_report(RemeshReport& report, const Made& before, std::size_t closed) {
   const RemeshReport& first = before.result.report;
   report.input_vertices = first.input_vertices;
   report.input_faces = first.input_faces;
-  report.stages.insert(report.stages.begin(), first.stages.begin(), first.stages.end());
   std::vector<std::string> notes = before.notes;
   for (std::string& note : report.notes) {
     if (std::ranges::find(notes, note) == notes.end()) notes.push_back(std::move(note));
@@ -52,14 +51,17 @@ void try_without_tunnels(Made& made, const RemeshOptions& options, const Make& m
   for (const Vec3& p : first.result.fields.surface.positions) box.extend(p);
   constexpr double of_diagonal = 0.25;  // a wider tunnel is what the shape is about
   const double longest = of_diagonal * box.diagonal().norm();
+  std::vector<StageTime> times = first.result.report.stages;
+  Stages stage(context, times);
   std::size_t closed_before = 0;
   // How many sides of faces are around the widest tunnels that are closed.
   for (const double sides_around : {4.0, 6.0}) {
-    if (!are_many(made.faults, faces)) return;
+    if (!are_many(made.faults, faces)) break;
     Mesh surface = first.result.fields.surface;
-    const std::size_t closed = close_tunnels(surface, first.faults.nodes,
-                                             std::min(sides_around * first.side, longest), context);
-    constexpr double considerably = 1.1;  // else it would be about the same once more
+    const double most = std::min(sides_around * first.side, longest);
+    const std::size_t closed =
+        stage("tunnels", [&] { return close_tunnels(surface, first.faults.nodes, most, context); });
+    constexpr double considerably = 1.05;  // else it would be about the same once more
     const bool are_more =
         static_cast<double>(closed) > considerably * static_cast<double>(closed_before);
     if (!are_more) continue;
@@ -69,10 +71,13 @@ void try_without_tunnels(Made& made, const RemeshOptions& options, const Make& m
       again.vertex_count = first.result.mesh.positions.size();
     }
     Made other = make(std::move(surface), again, context);
+    const std::vector<StageTime>& took = other.result.report.stages;
+    times.insert(times.end(), took.begin(), took.end());
     if (!other.faults.are_clearly_fewer_than(made.faults)) continue;
     continue_report(other.result.report, first, closed);
     made = std::move(other);
   }
+  made.result.report.stages = std::move(times);
 }
 
 }  // namespace meshgrain
