@@ -398,11 +398,11 @@ TEST(Finish, TwistedQuadsGoOffTheSurface) {
   untwist(grid, normals, Context());
   EXPECT_EQ(grid.mesh.positions, regular.mesh.positions);
 
-  Extraction flat = grid;  // a corner so straight that rounding would turn it in
-  flat.mesh.positions[at(3, 3)] -= Vec3(0.499999f, 0.499999f, 0);
-  ASSERT_NEAR(mesh_statistics(flat.mesh).jacobian_min, 0, 1e-5);
-  untwist(flat, normals, Context());
-  EXPECT_GT(mesh_statistics(flat.mesh).jacobian_min, 1e-3);
+  Extraction straight = grid;  // a corner at (3, 3) that rounding would turn in
+  straight.mesh.positions[at(3, 3)] -= Vec3(0.499999f, 0.499999f, 0);
+  ASSERT_NEAR(mesh_statistics(straight.mesh).jacobian_min, 0, 1e-5);
+  untwist(straight, normals, Context());
+  EXPECT_GT(mesh_statistics(straight.mesh).jacobian_min, 1e-3);
 
   grid.mesh.positions[at(3, 3)] += Vec3(1.1f, 0.2f, 0);
   grid.mesh.positions[at(2, 1)] += Vec3(-0.4f, 0.2f, 0.3f);
