@@ -378,6 +378,39 @@ TEST(Features, FacetsOfATwistedColumnAreNoCreasesOfCoarseFaces) {
   EXPECT_GT(followed.mesh.faces.size(), 2 * options.face_count);
 }
 
+/// The borders of materials, such as the lanes of a running track, much narrower than faces.
+TEST(Features, MarksYieldToSoundFaces) {
+  constexpr Index side = 80;
+  Mesh field;
+  const auto at = [](Index x, Index y) { return y * (side + 1) + x; };
+  for (Index y = 0; y <= side; ++y) {
+    for (Index x = 0; x <= side; ++x) {
+      field.positions.push_back({static_cast<float>(x), static_cast<float>(y), 0});
+      if (x == 0 || y == 0) continue;
+      field.faces.push_back({at(x - 1, y - 1), at(x, y - 1), at(x, y), at(x - 1, y)});
+    }
+  }
+  for (Index lane = 20; lane < 30; ++lane) {  // rings
+    const Index last = side - lane;
+    for (Index k = lane; k < last; ++k) {
+      for (const Index fixed : {lane, last}) {
+        field.marked_edges.push_back({at(k, fixed), at(k + 1, fixed)});
+        field.marked_edges.push_back({at(fixed, k), at(fixed, k + 1)});
+      }
+    }
+  }
+  for (Index k = 10; k < 70; ++k) {  // and short lines across them
+    const Index y = k % 40 + 20;
+    field.marked_edges.push_back({at(k, y), at(k + 1, y)});
+  }
+  RemeshOptions options;
+  options.face_count = 150;
+  const RemeshResult result = remesh(field, options);
+  expect_sound(result.mesh, field, options.face_count);
+  ASSERT_EQ(result.report.notes.size(), 1u);
+  EXPECT_TRUE(result.report.notes[0].starts_with("without creases and marked edges: "));
+}
+
 TEST(Features, StepsOfVoxelsYieldToSoundFaces) {
   const Mesh ball = voxel_ball(11);
   ASSERT_GT(features_of(triangulate(ball)).size(), 500u);

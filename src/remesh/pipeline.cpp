@@ -94,7 +94,7 @@ void Pipeline::find_lines() {
       features_ = find_features(surface_, options, guides_, target_.face_side(area_), context_);
     };
     find();
-    if (may_leave_out_creases() && lines_have_no_room()) {
+    if (may_leave_out_creases() && !has_marks() && lines_have_no_room()) {
       leaves_out_creases_ = true;
       find();
       result_.report.notes.emplace_back(
@@ -106,9 +106,12 @@ void Pipeline::find_lines() {
 }
 
 bool Pipeline::may_leave_out_creases() const {
-  const bool has_marks = is_coarsened_ ? had_marks_ : !surface_.marked_edges.empty();
-  return options_.features.creases == Creases::automatic && !has_marks && !leaves_out_creases_ &&
-         !is_cloud_ && nodes_are_vertices_;
+  return options_.features.creases == Creases::automatic && !leaves_out_creases_ && !is_cloud_ &&
+         nodes_are_vertices_;
+}
+
+bool Pipeline::has_marks() const {
+  return is_coarsened_ ? had_marks_ : !surface_.marked_edges.empty();
 }
 
 bool Pipeline::lines_have_no_room() const {

@@ -187,11 +187,13 @@ class Pipeline {
   /// flaws, before and after.
   void recover_lost_surface(const LostSurface& lost, Flaws& left);
   /// What there is without creases that nobody asked for, where faces could not follow them: the
-  /// steps of a surface around voxels, or parts that are thinner than a face. Returns whether that
-  /// is better.
+  /// steps of a surface around voxels, or parts that are thinner than a face. Marked edges, such as
+  /// the borders of materials, go with them. Returns whether that is better.
   bool try_without_creases(const Flaws& before);
   /// Whether there may be creases that nobody asked for.
   bool may_leave_out_creases() const;
+  /// Whether the input has marked edges.
+  bool has_marks() const;
   /// Whether there are more lines than edges that could follow them, as where each facet of a
   /// twisted bar or a thin hair counts as a crease.
   bool lines_have_no_room() const;

@@ -186,7 +186,11 @@ bool Pipeline::try_without_creases(const Flaws& before) {
   };
   if (!try_again(is_better, leave_out)) return false;
   result_.report.notes.emplace_back(
-      "without creases: faces of this size that follow them would pass through each other");
+      has_marks()
+          ? "without creases and marked edges: faces of this size that follow them would be "
+            "inverted or pass through each other"
+          : "without creases: faces of this size that follow them would pass through each "
+            "other");
   return true;
 }
 
