@@ -112,10 +112,16 @@ Made make(Mesh input, const RemeshOptions& options, const Context& context) {
   make_mesh(pipeline);
   Faults faults = pipeline.find_faults();
   const double side = pipeline.face_side();
-  return {std::move(pipeline).result(), std::move(faults), side, std::move(notes)};
+  const bool has_marks = pipeline.has_marks() || pipeline.is_sharpened();
+  return {std::move(pipeline).result(), std::move(faults), side, std::move(notes), has_marks};
 }
 
-RemeshResult remesh_as_it_is(Mesh input, const RemeshOptions& options, const Context& context) {
+/// One half of a mesh, whose tunnels must be those of the other.
+RemeshResult remesh_half(Mesh input, const RemeshOptions& options, const Context& context) {
+  return make(std::move(input), options, context).result;
+}
+
+RemeshResult remesh_whole(Mesh input, const RemeshOptions& options, const Context& context) {
   Made made = make(std::move(input), options, context);
   try_without_tunnels(made, options, make, context);
   return std::move(made.result);
@@ -127,8 +133,8 @@ RemeshResult remesh(Mesh input, const RemeshOptions& options, const Context& con
   check(options);
   check_memory(input, options, context);
   RemeshResult result = options.symmetry.any()
-                            ? remesh_symmetric(std::move(input), options, remesh_as_it_is, context)
-                            : remesh_as_it_is(std::move(input), options, context);
+                            ? remesh_symmetric(std::move(input), options, remesh_half, context)
+                            : remesh_whole(std::move(input), options, context);
   note_missed_count(result, options);
   return result;
 }

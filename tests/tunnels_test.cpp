@@ -119,6 +119,36 @@ TEST(Tunnels, SmallHandlesGoAndLargeOnesStay) {
   EXPECT_EQ(closed_in(large, 0.8), 0u);
 }
 
+/// The solid is where the volume is, whichever side the faces look to.
+TEST(Tunnels, SidesMayBeInsideOut) {
+  const auto turned = [](Mesh mesh) {
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f) std::ranges::reverse(mesh.faces[f]);
+    return mesh;
+  };
+  Mesh holes = turned(made::sampled_on_grid(plate, 40));
+  EXPECT_EQ(closed_in(holes, 1.2 * 2 * M_PI * hole_radius), plate_holes);
+  Mesh ear = turned(
+      made::sampled_on_grid([](const Point& p) { return ball_with_ear(p, 0.35, 0.05); }, 60));
+  EXPECT_EQ(closed_in(ear, 0.8), 0u);
+}
+
+/// Lids would cut through a pin in a hole.
+TEST(Tunnels, WhatOthersGoThroughStaysOpen) {
+  Mesh mesh = made::sampled_on_grid(plate, 40);
+  const auto pin = [](const Point& p) {
+    return std::max(std::hypot(p.x(), p.y()) - 0.4 * hole_radius, std::abs(p.z()) - 0.5);
+  };
+  const auto first = static_cast<Index>(mesh.positions.size());
+  const Mesh added = made::sampled_on_grid(pin, 80);
+  mesh.positions.insert(mesh.positions.end(), added.positions.begin(), added.positions.end());
+  for (std::size_t f = 0; f < added.faces.size(); ++f) {
+    const auto c = added.faces[f];
+    mesh.faces.push_back({c[0] + first, c[1] + first, c[2] + first});
+  }
+  const double longest = 1.2 * 2 * M_PI * hole_radius;
+  EXPECT_EQ(close_tunnels(mesh, all_vertices(mesh), longest, Context()), plate_holes - 1);
+}
+
 TEST(Tunnels, LimbsAreNotCutOff) {
   const auto limbs = [](const Point& p) {
     const double across = std::hypot(p.y(), p.z());

@@ -84,7 +84,11 @@ class Pipeline {
   /// Pure quads: irregular vertices that cancel each other out go.
   void untie_knots();
 
+  /// When all is done. Of more than 30,000 faces only if one is inverted.
   Faults find_faults();
+  /// Whether the input has marked edges.
+  bool has_marks() const;
+  bool is_sharpened() const { return is_sharpened_; }
   /// The mean side of a face, in input units.
   double face_side() const { return target_.face_side(area_) * frame_.scale; }
 
@@ -178,7 +182,8 @@ class Pipeline {
   /// None where that cannot be told.
   LostSurface lost_surface() const;
   Flaws flaws(double lost_faces);
-  /// Those of the faces that are farther than a face from where the surface passes through itself.
+  /// Those of these pairs that are farther than a face from where the surface passes through
+  /// itself.
   std::vector<std::array<Index, 2>> own(std::vector<std::array<Index, 2>> crossings);
   /// Limbs become thinner than they are, and are lost, where the rows around them are as many as
   /// at their ends: a lattice that has all its singularities there lets rows end.
@@ -192,8 +197,6 @@ class Pipeline {
   bool try_without_creases(const Flaws& before);
   /// Whether there may be creases that nobody asked for.
   bool may_leave_out_creases() const;
-  /// Whether the input has marked edges.
-  bool has_marks() const;
   /// Whether there are more lines than edges that could follow them, as where each facet of a
   /// twisted bar or a thin hair counts as a crease.
   bool lines_have_no_room() const;

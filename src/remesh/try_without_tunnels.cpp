@@ -58,6 +58,7 @@ void try_without_tunnels(Made& made, const RemeshOptions& options, const Make& m
   for (const double sides_around : {4.0, 6.0}) {
     if (!are_many(made.faults, faces)) break;
     Mesh surface = first.result.fields.surface;
+    if (!first.has_marks) surface.marked_edges.clear();  // creases are found anew
     const double most = std::min(sides_around * first.side, longest);
     const std::size_t closed =
         stage("tunnels", [&] { return close_tunnels(surface, first.faults.nodes, most, context); });

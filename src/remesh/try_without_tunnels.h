@@ -15,6 +15,7 @@ struct Made {
   Faults faults;
   double side;                     // of a face, in the mean
   std::vector<std::string> notes;  // of the input, before there were faces
+  bool has_marks;                  // besides those of creases that were found
 };
 
 using Make = std::function<Made(Mesh input, const RemeshOptions&, const Context&)>;

@@ -1,19 +1,24 @@
 #include "tunnels/close_tunnels.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "finish/crossings.h"
 #include "mesh/keep_vertices.h"
 #include "mesh/vertex_faces.h"
 #include "tunnels/loop_search.h"
 #include "tunnels/tunnel.h"
 #include "util/edge_of.h"
 #include "util/sort_unique.h"
+#include "util/union_find.h"
 
 namespace meshgrain {
 namespace {
@@ -123,6 +128,27 @@ std::vector<Loop> find_loops(const Mesh& mesh, const VertexFaces& around,
   return loops;
 }
 
+/// Whether the lids of a sleeve would pass through other pieces of the surface, as where a pin is
+/// in a hole, or a chain has its next link. `pieces`: of vertices.
+bool passes_through_others(const Mesh& mesh, const Sleeve& sleeve, UnionFind& pieces,
+                           const Context& context) {
+  Mesh lids;
+  lids.positions = mesh.positions;
+  for (const auto& rim : sleeve.rims) put_lid_on(lids, rim);
+  Eigen::AlignedBox3f box;
+  for (const auto& rim : sleeve.rims) {
+    for (const Index v : rim) box.extend(mesh.positions[v]);
+  }
+  std::vector<Index> own(lids.faces.size());
+  std::iota(own.begin(), own.end(), Index{0});
+  const Index piece = pieces.find(sleeve.rims[0][0]);
+  for (Index f = 0; f < mesh.faces.size(); ++f) {
+    if (pieces.find(mesh.faces[f][0]) == piece) continue;
+    if (face_box(mesh, f).intersects(box)) lids.faces.push_back(mesh.faces[f]);
+  }
+  return lids.faces.size() > own.size() && count_crossings_of(lids, own, context) > 0;
+}
+
 /// Tunnels without a vertex in common, those of the shortest loops first.
 std::vector<Tunnel> find_tunnels(const Mesh& mesh, TunnelSearch::Kind kind,
                                  std::span<const Index> near, double longest,
@@ -130,11 +156,15 @@ std::vector<Tunnel> find_tunnels(const Mesh& mesh, TunnelSearch::Kind kind,
   const VertexFaces around = vertex_faces(mesh, context);
   SleeveCutter cutter(mesh, around);
   TunnelSearch search(mesh, around, cutter);
+  UnionFind pieces(mesh.positions.size());
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    for (const Index v : mesh.faces[f]) pieces.unite(mesh.faces[f][0], v);
+  }
   std::vector<Tunnel> tunnels;
   for (const Loop& loop : find_loops(mesh, around, near, longest, context)) {
     context.check();
     std::optional<Sleeve> sleeve = search.sleeve_around(loop.vertices, kind, longest);
-    if (!sleeve) continue;
+    if (!sleeve || passes_through_others(mesh, *sleeve, pieces, context)) continue;
     cutter.cut_out(*sleeve);
     tunnels.push_back({loop.length, std::move(*sleeve)});
   }
@@ -163,7 +193,8 @@ std::size_t close_tunnels(Mesh& triangles, std::span<const Index> near, double l
   if (count > 0) {
     std::vector<Index> all(triangles.positions.size());
     std::iota(all.begin(), all.end(), Index{0});
-    close_all(hollow, all, longest_closed * (1 + 1e-3));
+    constexpr double alike = 1.1;
+    close_all(hollow, all, std::min(longest, alike * longest_closed));
   }
   // What is left between holes side by side is a short handle, too, until these are closed.
   close_all(handle, near, longest / 2);

@@ -15,10 +15,10 @@ class LoopSearch {
   /// Both must outlive this.
   LoopSearch(const Mesh& triangles, const VertexFaces& around);
 
-  /// The vertices along those that come within a distance of a vertex: short ones among all of
-  /// about this length, from where they are farthest from it on. (Erickson and Whittlesey 2005,
-  /// Greedy optimal homotopy and homology generators, on as much of the surface as they need.)
-  /// Those by the vertex itself are as short as can be.
+  /// The vertices along some of them that pass within `distance` of a vertex, among these the
+  /// shortest if it is not longer than `longest`. Each starts at the end of one of the two shortest
+  /// paths that it is made of. (Erickson and Whittlesey 2005, Greedy optimal homotopy and homology
+  /// generators, on what lies within `distance` and half of `longest`.)
   std::vector<std::vector<Index>> near(Index vertex, double distance, double longest);
   /// Calls body(v) for the vertices within a distance of that where near() was last.
   template <typename Body>

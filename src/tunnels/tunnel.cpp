@@ -53,7 +53,18 @@ TunnelSearch::TunnelSearch(const Mesh& triangles, const VertexFaces& around,
       place_(triangles.positions.size(), no_index),
       round_of_(std::max(triangles.positions.size(), triangles.faces.size()), 0),
       side_of_(round_of_.size()),
-      was_reached_(triangles.positions.size(), 0) {}
+      was_reached_(triangles.positions.size(), 0) {
+  // A surface with its inside out has the solid on the other side.
+  double volume = 0;
+  for (std::size_t f = 0; f < triangles.faces.size(); ++f) {
+    const auto c = triangles.faces[f];
+    const auto from_first = [&](Index v) -> Eigen::Vector3d {
+      return (triangles.positions[v] - triangles.positions[0]).cast<double>();
+    };
+    volume += from_first(c[0]).cross(from_first(c[1])).dot(from_first(c[2]));
+  }
+  is_inside_out_ = volume < 0;
+}
 
 Vec3 TunnelSearch::area_vector(Index f) const {
   const auto c = mesh_.faces[f];
@@ -95,7 +106,8 @@ void TunnelSearch::each_across(Index f, const Body& body) const {
   }
 }
 
-/// The faces to the left and to the right of the loop. Returns false if that is not one an edge.
+/// The faces to the left and to the right of the loop. Returns false if an edge has not exactly one
+/// on either side.
 bool TunnelSearch::find_sides() {
   for (Faces& side : sides_) side.clear();
   for (std::size_t k = 0; k < loop_.size(); ++k) {
@@ -146,7 +158,7 @@ bool TunnelSearch::is_hollow() const {
     for (const Index f : around_[v]) normal += area_vector(f);
     sum += normal.stableNormalized().dot((middle - mesh_.positions[v]).stableNormalized());
   }
-  return sum > 0;
+  return (sum > 0) != is_inside_out_;
 }
 
 /// Whether there is a way no longer than that from one side to the other.
@@ -166,6 +178,7 @@ bool TunnelSearch::has_way_around(double longest) {
     if (!mark(v, left)) continue;
     if (std::ranges::binary_search(banks[right], v)) return true;
     for (const Index f : around_[v]) {
+      if (cutter_.was_cut_out(f)) continue;
       for (const Index w : mesh_.faces[f]) {
         const double there = distance + (mesh_.positions[w] - mesh_.positions[v]).norm();
         if (!is_on_loop(w) && there <= longest) queue.emplace(there, w);
@@ -234,6 +247,7 @@ TunnelSearch::Faces TunnelSearch::faces_in_tunnel(const Faces& at_loop) {
       for (const Index w : mesh_.faces[f]) {
         if (was_reached_[w] || cutter_.is_taken(w)) continue;
         if (!is_on_loop(v) && !mark(w, side_of_[v])) meet = meet || side_of_[w] != side_of_[v];
+        if (!is_marked(w)) continue;  // of another fan of faces at a vertex that is not manifold
         queue.emplace(distance + (mesh_.positions[w] - mesh_.positions[v]).norm(), w);
       }
     }
@@ -275,8 +289,8 @@ std::optional<Sleeve> TunnelSearch::sleeve_around(const std::vector<Index>& loop
   constexpr double longest_rim = 2.5;  // times as long as a loop may be
   std::optional<Sleeve> sleeve;
   const bool is_hollow_one = kind == Kind::hollow;
-  if (find_sides() && is_hollow() == is_hollow_one && are_sides_connected() &&
-      (is_hollow_one || has_way_around(longest))) {
+  // What is near is looked at first: whether the rest stays connected may take long.
+  if (find_sides() && is_hollow() == is_hollow_one) {
     const Faces at_loop = faces_at_loop();
     Faces all = is_hollow_one ? faces_in_tunnel(at_loop) : Faces();
     if (!all.empty()) {
@@ -284,6 +298,9 @@ std::optional<Sleeve> TunnelSearch::sleeve_around(const std::vector<Index>& loop
       sleeve = cutter_.sleeve_of(std::move(all), longest_rim * longest);
     }
     if (!sleeve) sleeve = cutter_.sleeve_of(at_loop, longest_rim * longest);
+    const bool is_one =
+        sleeve && (is_hollow_one || has_way_around(longest)) && are_sides_connected();
+    if (!is_one) sleeve.reset();
   }
   for (const Index v : loop) place_[v] = no_index;
   return sleeve;

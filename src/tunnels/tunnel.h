@@ -53,6 +53,7 @@ class TunnelSearch {
   const Mesh& mesh_;
   const VertexFaces& around_;
   const SleeveCutter& cutter_;
+  bool is_inside_out_ = false;
   std::vector<Index> loop_;
   double length_ = 0;                      // of the loop
   std::vector<Index> place_;               // of each vertex in the loop, or no_index
