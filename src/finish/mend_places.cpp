@@ -29,10 +29,7 @@ class Mending {
         context_(context) {}
 
   void run() {
-    if (!options_.is_part) {
-      is_crumpled_ = find_crossings(mesh_, context_).size() > mesh_.faces.size();
-      part_crossings();
-    }
+    if (!options_.is_part) part_crossings();
     failed_slides_ = 0;
     effort_left_ = 0;
     for (const BadPlaces::Demands& demands : ever_less) {
@@ -82,7 +79,8 @@ class Mending {
   double effort() const {
     if (options_.is_part) return effort_for_a_part;
     const double all = effort_for_a_mesh + effort_a_face * static_cast<double>(mesh_.faces.size());
-    return is_crumpled_ ? all / 10 : all;
+    constexpr double share_if_crumpled = 0.1;
+    return is_crumpled_ ? share_if_crumpled * all : all;
   }
 
   void demand(const BadPlaces::Demands& demands) {
@@ -93,13 +91,15 @@ class Mending {
 
   void part_crossings() {
     std::vector<std::uint8_t> inherent(mesh_.faces.size(), 0);  // beside crossings of the surface
+    auto crossings = find_crossings(mesh_, context_);
+    is_crumpled_ = crossings.size() > mesh_.faces.size();
     for (const BadPlaces::Demands& demands : ever_less) {
       demand(demands);
       bool few = true;
       for (const int rings : ever_wider) {
-        const auto crossings = find_crossings(mesh_, context_);
         if (crossings.empty()) return;
         few = part_all(crossings, rings, inherent) && few;
+        crossings = find_crossings(mesh_, context_);
       }
       // Poor faces are worth it only for a result that passes through itself nowhere.
       if (!few || std::ranges::count(inherent, 1) > 0) return;

@@ -293,7 +293,7 @@ class Pipeline {
   std::vector<std::uint8_t> keeps_singularities_;  // the lattice; see ExtractOptions
   Extraction extraction_;
   bool is_split_ = false;        // into the quads that are written
-  bool may_have_faults_ = true;  // else there are none, when all is done
+  bool may_have_faults_ = true;  // what is done after mend_flaws() adds none
 };
 
 }  // namespace meshgrain

@@ -21,8 +21,9 @@ bool may_close_any(const Made& made, const RemeshOptions& options) {
 }
 
 /// Whether faults are more than a few crossings.
-bool are_many(const Faults& faults, std::size_t faces) {
-  return faults.inverted > 0 || faults.crossings > faces / Flaws::hopeless;
+bool has_many_faults(const Made& made) {
+  return made.faults.inverted > 0 ||
+         made.faults.crossings > made.result.mesh.faces.size() / Flaws::hopeless;
 }
 
 /// The report of a mesh without tunnels tells of the input as it was.
@@ -44,8 +45,7 @@ void continue_report(RemeshReport& report, const Made& before, std::size_t close
 
 void try_without_tunnels(Made& made, const RemeshOptions& options, const Make& make,
                          const Context& context) {
-  const std::size_t faces = made.result.mesh.faces.size();
-  if (!may_close_any(made, options) || !are_many(made.faults, faces)) return;
+  if (!may_close_any(made, options) || !has_many_faults(made)) return;
   const Made first = made;
   Eigen::AlignedBox3f box;
   for (const Vec3& p : first.result.fields.surface.positions) box.extend(p);
@@ -56,7 +56,7 @@ void try_without_tunnels(Made& made, const RemeshOptions& options, const Make& m
   std::size_t closed_before = 0;
   // How many sides of faces are around the widest tunnels that are closed.
   for (const double sides_around : {4.0, 6.0}) {
-    if (!are_many(made.faults, faces)) break;
+    if (!has_many_faults(made)) break;
     Mesh surface = first.result.fields.surface;
     if (!first.has_marks) surface.marked_edges.clear();  // creases are found anew
     const double most = std::min(sides_around * first.side, longest);

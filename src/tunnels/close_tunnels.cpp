@@ -14,6 +14,7 @@
 #include "finish/crossings.h"
 #include "mesh/keep_vertices.h"
 #include "mesh/vertex_faces.h"
+#include "tunnels/loop_length.h"
 #include "tunnels/loop_search.h"
 #include "tunnels/tunnel.h"
 #include "util/edge_of.h"
@@ -33,15 +34,6 @@ struct Tunnel {
   double loop;  // the length of a loop around it
   Sleeve sleeve;
 };
-
-double length_of(const std::vector<Index>& loop, const Mesh& mesh) {
-  double length = 0;
-  for (std::size_t k = 0; k < loop.size(); ++k) {
-    const Vec3& next = mesh.positions[loop[(k + 1) % loop.size()]];
-    length += (mesh.positions[loop[k]] - next).norm();
-  }
-  return length;
-}
 
 /// A new vertex in the middle of a rim, joined to all of that.
 void put_lid_on(Mesh& mesh, const std::vector<Index>& rim) {
@@ -121,7 +113,7 @@ std::vector<Loop> find_loops(const Mesh& mesh, const VertexFaces& around,
   sort_unique(there);
   std::vector<Loop> loops;
   look_from(there, close_by, 0, [&](Vertices&& loop) {
-    const double length = length_of(loop, mesh);
+    const double length = loop_length(loop, mesh.positions);
     if (length <= longest) loops.push_back({length, std::move(loop)});
   });
   sort_unique(loops);
@@ -132,21 +124,22 @@ std::vector<Loop> find_loops(const Mesh& mesh, const VertexFaces& around,
 /// in a hole, or a chain has its next link. `pieces`: of vertices.
 bool passes_through_others(const Mesh& mesh, const Sleeve& sleeve, UnionFind& pieces,
                            const Context& context) {
-  Mesh lids;
-  lids.positions = mesh.positions;
-  for (const auto& rim : sleeve.rims) put_lid_on(lids, rim);
   Eigen::AlignedBox3f box;
   for (const auto& rim : sleeve.rims) {
     for (const Index v : rim) box.extend(mesh.positions[v]);
   }
-  std::vector<Index> own(lids.faces.size());
-  std::iota(own.begin(), own.end(), Index{0});
+  Mesh near;
   const Index piece = pieces.find(sleeve.rims[0][0]);
   for (Index f = 0; f < mesh.faces.size(); ++f) {
     if (pieces.find(mesh.faces[f][0]) == piece) continue;
-    if (face_box(mesh, f).intersects(box)) lids.faces.push_back(mesh.faces[f]);
+    if (face_box(mesh, f).intersects(box)) near.faces.push_back(mesh.faces[f]);
   }
-  return lids.faces.size() > own.size() && count_crossings_of(lids, own, context) > 0;
+  if (near.faces.empty()) return false;
+  std::vector<Index> lids(sleeve.rims[0].size() + sleeve.rims[1].size());
+  std::iota(lids.begin(), lids.end(), static_cast<Index>(near.faces.size()));
+  near.positions = mesh.positions;
+  for (const auto& rim : sleeve.rims) put_lid_on(near, rim);
+  return count_crossings_of(near, lids, context) > 0;
 }
 
 /// Tunnels without a vertex in common, those of the shortest loops first.

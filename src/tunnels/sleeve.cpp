@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "tunnels/loop_length.h"
 #include "util/sort_unique.h"
 
 namespace meshgrain {
@@ -73,18 +74,16 @@ std::optional<Sleeve> SleeveCutter::sleeve_of(std::vector<Index> faces, double l
     if (first > 0 && rim[first][0] == rim[first - 1][0]) return std::nullopt;  // touches itself
     if (was_seen[first]) continue;
     std::vector<Index> loop;
-    double length = 0;
     for (std::size_t k = first; !was_seen[k];) {
       was_seen[k] = 1;
-      const auto [a, b] = rim[k];
       if (beyond(sleeve.faces, rim[k]) == no_index) return std::nullopt;
+      const auto [a, b] = rim[k];
       loop.push_back(a);
-      length += (mesh_.positions[a] - mesh_.positions[b]).norm();
       const auto next = std::ranges::lower_bound(rim, Halfedge{b, 0});
       if (next == rim.end() || (*next)[0] != b) return std::nullopt;
       k = static_cast<std::size_t>(next - rim.begin());
     }
-    if (length > longest_rim) return std::nullopt;
+    if (loop_length(loop, mesh_.positions) > longest_rim) return std::nullopt;
     sleeve.rims.push_back(std::move(loop));
   }
   if (sleeve.rims.size() != 2) return std::nullopt;

@@ -6,7 +6,8 @@
 #include <queue>
 #include <utility>
 
-#include "util/sort_unique.h"
+#include "finish/face_shape.h"
+#include "tunnels/loop_length.h"
 
 namespace meshgrain {
 namespace {
@@ -64,12 +65,6 @@ TunnelSearch::TunnelSearch(const Mesh& triangles, const VertexFaces& around,
     volume += from_first(c[0]).cross(from_first(c[1])).dot(from_first(c[2]));
   }
   is_inside_out_ = volume < 0;
-}
-
-Vec3 TunnelSearch::area_vector(Index f) const {
-  const auto c = mesh_.faces[f];
-  const auto& p = mesh_.positions;
-  return 0.5f * (p[c[1]] - p[c[0]]).cross(p[c[2]] - p[c[0]]);
 }
 
 bool TunnelSearch::mark(Index which, Side side) {
@@ -155,7 +150,7 @@ bool TunnelSearch::is_hollow() const {
   float sum = 0;
   for (const Index v : loop_) {
     Vec3 normal = Vec3::Zero();
-    for (const Index f : around_[v]) normal += area_vector(f);
+    for (const Index f : around_[v]) normal += area_vector(mesh_.faces[f], mesh_.positions);
     sum += normal.stableNormalized().dot((middle - mesh_.positions[v]).stableNormalized());
   }
   return (sum > 0) != is_inside_out_;
@@ -267,7 +262,7 @@ TunnelSearch::Faces TunnelSearch::faces_in_tunnel(const Faces& at_loop) {
     for (const Index f : around_[v]) {
       if (std::ranges::any_of(mesh_.faces[f], [&](Index w) { return !was_reached_[w]; })) continue;
       found.push_back(f);
-      width.add(area_vector(f).norm());
+      width.add(area_vector(mesh_.faces[f], mesh_.positions).norm());
     }
     go_on(v, distance);
   }
@@ -281,11 +276,8 @@ std::optional<Sleeve> TunnelSearch::sleeve_around(const std::vector<Index>& loop
   if (loop.size() < 3) return std::nullopt;
   if (std::ranges::any_of(loop, [&](Index v) { return cutter_.is_taken(v); })) return std::nullopt;
   loop_ = loop;
-  length_ = 0;
-  for (Index k = 0; k < loop.size(); ++k) {
-    place_[loop[k]] = k;
-    length_ += (mesh_.positions[loop[k]] - mesh_.positions[loop[(k + 1) % loop.size()]]).norm();
-  }
+  length_ = loop_length(loop, mesh_.positions);
+  for (Index k = 0; k < loop.size(); ++k) place_[loop[k]] = k;
   constexpr double longest_rim = 2.5;  // times as long as a loop may be
   std::optional<Sleeve> sleeve;
   const bool is_hollow_one = kind == Kind::hollow;

@@ -31,7 +31,6 @@ class TunnelSearch {
   enum Side : std::uint8_t { left, right };
   static constexpr std::array both{left, right};
 
-  Vec3 area_vector(Index f) const;
   bool is_on_loop(Index v) const { return place_[v] != no_index; }
   bool is_in_loop(Index a, Index b) const;
   Index across(Index f, Index a, Index b) const;
