@@ -10,7 +10,7 @@
 #include "remesh/notes.h"
 #include "remesh/pipeline.h"
 #include "remesh/target.h"
-#include "remesh/try_without_tunnels.h"
+#include "remesh/try_simpler_topology.h"
 #include "symmetry/remesh_symmetric.h"
 
 namespace meshgrain {
@@ -113,7 +113,13 @@ Made make(Mesh input, const RemeshOptions& options, const Context& context) {
   Faults faults = pipeline.find_faults();
   const double side = pipeline.face_side();
   const bool has_marks = pipeline.has_marks() || pipeline.is_sharpened();
-  return {std::move(pipeline).result(), std::move(faults), side, std::move(notes), has_marks};
+  Mesh seamed = pipeline.take_seamed();
+  return {std::move(pipeline).result(),
+          std::move(faults),
+          side,
+          std::move(notes),
+          std::move(seamed),
+          has_marks};
 }
 
 /// One half of a mesh, whose tunnels must be those of the other.
@@ -123,7 +129,7 @@ RemeshResult remesh_half(Mesh input, const RemeshOptions& options, const Context
 
 RemeshResult remesh_whole(Mesh input, const RemeshOptions& options, const Context& context) {
   Made made = make(std::move(input), options, context);
-  try_without_tunnels(made, options, make, context);
+  try_simpler_topology(made, options, make, context);
   return std::move(made.result);
 }
 

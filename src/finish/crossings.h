@@ -30,4 +30,10 @@ std::size_t count_crossings_of(const Mesh& mesh, std::span<const Index> some,
 /// its topology needs, and nothing can be done about them.
 inline constexpr std::size_t hopeless_crossings = 10;
 
+/// Where there are more than faces, hardly anything can be: it is worth this share of the effort.
+inline bool is_crumpled(std::size_t crossings, std::size_t faces) {
+  return crossings > faces;
+}
+inline constexpr double effort_if_crumpled = 0.1;
+
 }  // namespace meshgrain

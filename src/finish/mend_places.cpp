@@ -79,8 +79,7 @@ class Mending {
   double effort() const {
     if (options_.is_part) return effort_for_a_part;
     const double all = effort_for_a_mesh + effort_a_face * static_cast<double>(mesh_.faces.size());
-    constexpr double share_if_crumpled = 0.1;
-    return is_crumpled_ ? share_if_crumpled * all : all;
+    return is_crumpled_ ? effort_if_crumpled * all : all;
   }
 
   void demand(const BadPlaces::Demands& demands) {
@@ -92,7 +91,7 @@ class Mending {
   void part_crossings() {
     std::vector<std::uint8_t> inherent(mesh_.faces.size(), 0);  // beside crossings of the surface
     auto crossings = find_crossings(mesh_, context_);
-    is_crumpled_ = crossings.size() > mesh_.faces.size();
+    is_crumpled_ = is_crumpled(crossings.size(), mesh_.faces.size());
     for (const BadPlaces::Demands& demands : ever_less) {
       demand(demands);
       bool few = true;
@@ -293,7 +292,7 @@ class Mending {
   LocalSearch& search_;
   BadPlaces places_;
   const SmoothOptions& options_;
-  bool is_crumpled_ = false;  // all over, so that it is no use
+  bool is_crumpled_ = false;
   std::size_t failed_slides_ = 0;
   std::vector<Start> failed_starts_;  // of slides, with the same demands
   double effort_left_ = 0;

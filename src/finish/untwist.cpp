@@ -23,15 +23,21 @@ class Untwisting {
 
   void run() {
     std::vector<Index> twisted = twisted_quads();
-    if (twisted.empty() || is_hopeless(twisted.size())) return;
+    const std::size_t faces = mesh_.faces.size();
+    constexpr std::size_t hopeless = 5;  // one in so many
+    if (twisted.empty() || twisted.size() > faces / hopeless) return;
+    const std::size_t crossings = find_crossings(mesh_, context_).size();
+    if (crossings > hopeless_crossings * faces) return;
     around_ = vertex_faces(mesh_, context_);
     start_ = mesh_.positions;
     hold();
-    tries_left_ = tries_for_a_mesh + tries_a_face * mesh_.faces.size();
+    const double effort = is_crumpled(crossings, faces) ? effort_if_crumpled : 1;
+    tries_left_ = static_cast<std::size_t>(
+        effort * static_cast<double>(tries_for_a_mesh + tries_a_face * faces));
     for (const std::size_t price : prices) {
       for (const int rings : {2, 3, 5}) {
         // A mesh with more of them is too coarse for its surface: no need to try for minutes.
-        const std::size_t most = 50 + mesh_.faces.size() / 100;
+        const std::size_t most = 50 + faces / 100;
         twisted.resize(std::min(twisted.size(), most));
         for (const Index f : twisted) mend(f, rings, price);
         twisted = twisted_quads();
@@ -45,14 +51,6 @@ class Untwisting {
   static constexpr std::size_t prices[] = {0, 10, 1000};
   /// Of vertices: twice as many as were ever needed to untwist all, which takes seconds.
   static constexpr std::size_t tries_for_a_mesh = 300000, tries_a_face = 10;
-
-  /// Whether the mesh is crumpled all over.
-  bool is_hopeless(std::size_t twisted) const {
-    constexpr std::size_t one_in = 5;
-    const std::size_t faces = mesh_.faces.size();
-    return twisted > faces / one_in ||
-           find_crossings(mesh_, context_).size() > hopeless_crossings * faces;
-  }
 
   enum Stay : std::uint8_t { nowhere, on_line, always };
 

@@ -148,6 +148,16 @@ std::vector<TwoFacedEdge> two_faced_edges(const Mesh& mesh, const Context& conte
       context);
 }
 
+bool disagree_somewhere(const Mesh& mesh, const Context& context) {
+  const auto disagreeing = select_edges<Edge>(
+      mesh,
+      [](Index a, Index b, const EdgeFaces& faces, Edges& out) {
+        if (faces.forth + faces.back == 2 && faces.forth != 1) out.push_back({a, b});
+      },
+      context);
+  return !disagreeing.empty();
+}
+
 RimAndSharpEdges rim_and_sharp_edges(const Mesh& mesh, double degrees, const Context& context) {
   // Unit normals of the faces, or zero.
   std::vector<Vec3> normals(mesh.faces.size());

@@ -43,6 +43,8 @@ struct TwoFacedEdge {
   bool agree;
 };
 std::vector<TwoFacedEdge> two_faced_edges(const Mesh& mesh, const Context& context);
+/// Whether there are any that do not agree: needs far less memory.
+bool disagree_somewhere(const Mesh& mesh, const Context& context);
 
 /// An edge between two faces, the smaller index first, and the cosine of the angle between their
 /// normals.

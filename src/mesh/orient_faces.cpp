@@ -187,9 +187,8 @@ class Orienting {
 
 OrientReport orient_faces(Mesh& mesh, const Context& context) {
   if (is_balanced(mesh, context)) return {.may_have_border = false};
-  const auto edges = two_faced_edges(mesh, context);
-  if (std::ranges::all_of(edges, &TwoFacedEdge::agree)) return {};
-  return Orienting(mesh, edges).run(context);
+  if (!disagree_somewhere(mesh, context)) return {};
+  return Orienting(mesh, two_faced_edges(mesh, context)).run(context);
 }
 
 }  // namespace meshgrain

@@ -13,6 +13,9 @@ struct SeamReport {
   /// Those that lie on others, between vertices at exactly the same places: so programs write
   /// meshes that have several normals or texture coordinates at a vertex.
   std::size_t seam_edges = 0;
+
+  /// Whether they are more than where pieces touch by chance.
+  bool are_many() const { return seam_edges > 0 && 4 * seam_edges >= border_edges; }
 };
 
 /// Of the edges of the border, which are given, those that would go if vertices at one place were

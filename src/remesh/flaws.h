@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "finish/crossings.h"
 #include "meshgrain/mesh.h"
 
 namespace meshgrain {
@@ -30,7 +31,7 @@ struct Flaws {
 
   /// A mesh that is crumpled all over is too coarse for its surface, and others would be as well.
   bool are_hopeless(std::size_t faces) const {
-    return faults > faces / hopeless || all_faults > faces;
+    return faults > faces / hopeless || is_crumpled(all_faults, faces);
   }
   static constexpr std::size_t hopeless = 20;  // one in so many faces
 

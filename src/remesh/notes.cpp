@@ -38,9 +38,8 @@ std::vector<std::string> describe(const OrientReport& oriented) {
 }
 
 std::vector<std::string> describe(const SeamReport& seams) {
-  constexpr std::size_t many = 4;  // one in so many: pieces may touch by chance
   std::vector<std::string> notes;
-  if (seams.seam_edges > 0 && many * seams.seam_edges >= seams.border_edges) {
+  if (seams.are_many()) {
     notes.push_back(
         std::to_string(seams.seam_edges) + " of " + std::to_string(seams.border_edges) +
         " border edges lie on each other, as along the seams of textures: --weld joins them");

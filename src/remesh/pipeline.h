@@ -86,6 +86,9 @@ class Pipeline {
 
   /// When all is done. Of more than 30,000 faces only if one is inverted.
   Faults find_faults();
+  /// The input, cleaned, if much of its border is seams, and it has not too many vertices to be
+  /// kept; else empty.
+  Mesh take_seamed();
   /// Whether the input has marked edges.
   bool has_marks() const;
   bool is_sharpened() const { return is_sharpened_; }
@@ -272,6 +275,7 @@ class Pipeline {
   bool is_sharpened_ = false;
   bool is_coarsened_ = false;  // its creases are marked since then, and
   bool had_marks_ = false;     // others were before
+  Mesh seamed_;                // see take_seamed()
   Mesh surface_;
   std::optional<BoxCells> crossings_of_surface_;  // once that is asked for
   VertexFaces around_;                            // its vertices, once it has a graph

@@ -35,6 +35,7 @@ std::vector<std::uint8_t> picked(const std::vector<std::uint8_t>& flags,
 }  // namespace
 
 void Pipeline::clean_up(Mesh input) {
+  constexpr std::size_t most_kept = 1 << 20;  // vertices: scans of many more have faces enough
   // What is read comes in any order; all that looks at neighbours is quicker with these nearby.
   constexpr std::size_t many = 1 << 16;
   if (input.positions.size() > many && input.faces.uniform_degree() >= 3 && !is_torn(input)) {
@@ -54,7 +55,10 @@ void Pipeline::clean_up(Mesh input) {
     if (!is_cloud_ && oriented.may_have_border) {
       auto border = border_edges(surface_, context_);
       add_notes(contract_border_of(surface_, border, context_));
-      add_notes(describe(find_seams(surface_, border)));
+      const SeamReport seams = find_seams(surface_, border);
+      add_notes(describe(seams));
+      const bool may_be_kept = options_.memory_limit == 0 && surface_.positions.size() <= most_kept;
+      if (seams.are_many() && may_be_kept) seamed_ = surface_;
     }
     drop_pieces();
   });

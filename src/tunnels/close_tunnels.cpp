@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <functional>
+#include <iterator>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -94,29 +94,34 @@ void close(Mesh& mesh, std::span<const Tunnel> tunnels) {
 /// The loops near some vertices that are not longer than that, the shortest first.
 std::vector<Loop> find_loops(const Mesh& mesh, const VertexFaces& around,
                              std::span<const Index> near, double longest, const Context& context) {
-  LoopSearch search(mesh, around);
-  using Vertices = std::vector<Index>;
-  const auto look_from = [&](std::span<const Index> places, double apart, double beyond,
-                             const std::function<void(Vertices &&)>& take) {
-    std::vector<std::uint8_t> is_covered(mesh.positions.size(), 0);
-    for (const Index v : places) {
-      context.check();
-      if (is_covered[v] || around[v].empty()) continue;
-      for (Vertices& loop : search.near(v, beyond, longest)) take(std::move(loop));
-      search.each_within(apart, [&](Index w) { is_covered[w] = 1; });
-    }
+  // What `take` makes of the loops near some of the places, which lie so far apart.
+  const auto look_from = [&]<typename Taken>(std::span<const Index> places, double apart,
+                                             double beyond, const auto& take,
+                                             std::vector<Taken>& all) {
+    const std::vector<Index> some = LoopSearch(mesh, around).thinned_out(places, apart);
+    std::vector<std::vector<Taken>> taken(some.size());
+    constexpr std::size_t grain = 64;
+    context.for_ranges(some.size(), grain, [&](std::size_t begin, std::size_t end) {
+      LoopSearch search(mesh, around);
+      for (std::size_t k = begin; k < end; ++k) {
+        context.check();
+        for (auto& loop : search.near(some[k], beyond, longest)) take(std::move(loop), taken[k]);
+      }
+    });
+    for (auto& part : taken) std::ranges::move(part, std::back_inserter(all));
+    sort_unique(all);
   };
+  using Vertices = std::vector<Index>;
   // From a few places it shows where there are any, and from there, which are the shortest.
-  Vertices there;
-  const double far = longest / 4, close_by = longest / 32;
-  look_from(near, far, far, [&](Vertices&& loop) { there.push_back(loop.front()); });
-  sort_unique(there);
+  std::vector<Index> there;
+  const auto take_place = [](Vertices&& loop, Vertices& taken) { taken.push_back(loop.front()); };
+  look_from(near, longest / 4, longest / 4, take_place, there);
   std::vector<Loop> loops;
-  look_from(there, close_by, 0, [&](Vertices&& loop) {
+  const auto take_loop = [&](Vertices&& loop, std::vector<Loop>& taken) {
     const double length = loop_length(loop, mesh.positions);
-    if (length <= longest) loops.push_back({length, std::move(loop)});
-  });
-  sort_unique(loops);
+    if (length <= longest) taken.push_back({length, std::move(loop)});
+  };
+  look_from(there, longest / 32, 0, take_loop, loops);
   return loops;
 }
 

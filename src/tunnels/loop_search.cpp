@@ -6,7 +6,6 @@
 #include <tuple>
 #include <utility>
 
-#include "util/edge_of.h"
 #include "util/union_find.h"
 
 namespace meshgrain {
@@ -16,7 +15,9 @@ LoopSearch::LoopSearch(const Mesh& triangles, const VertexFaces& around)
       around_(around),
       round_of_(triangles.positions.size(), 0),
       distance_(triangles.positions.size()),
-      before_(triangles.positions.size()) {}
+      before_(triangles.positions.size()),
+      round_of_face_(triangles.faces.size(), 0),
+      number_of_face_(triangles.faces.size()) {}
 
 void LoopSearch::reach_from(Index start, double farthest) {
   ++round_;
@@ -46,38 +47,42 @@ void LoopSearch::reach_from(Index start, double farthest) {
   }
 }
 
+/// What lies farther off than all that was reached counts as one face.
+constexpr Index farther_off = 0;
+
+Index LoopSearch::number_of(Index face) {
+  if (round_of_face_[face] == round_) return number_of_face_[face];
+  const bool is_whole =
+      std::ranges::all_of(mesh_.faces[face], [&](Index v) { return is_reached(v); });
+  round_of_face_[face] = round_;
+  return number_of_face_[face] = is_whole ? faces_++ : farther_off;
+}
+
 std::vector<LoopSearch::Chord> LoopSearch::chords() {
   struct Side {
-    std::array<Index, 2> ends;
+    Index end;  // of the edge, the other one
     Index face;
     auto operator<=>(const Side&) const = default;
   };
-  std::vector<Side> sides;
-  constexpr Index farther_off = 0;
+  std::vector<Side> sides;  // of a vertex
+  std::vector<Chord> result;
   faces_ = 1;
   for (const Index v : reached_) {
+    sides.clear();
     for (const Index f : around_[v]) {
-      const auto corners = mesh_.faces[f];
-      const auto count = std::ranges::count_if(corners, [&](Index w) { return is_reached(w); });
-      const bool is_first = std::ranges::all_of(
-          corners, [&](Index w) { return w >= v || !is_reached(w); });  // else it comes again
-      if (count < 2 || !is_first) continue;
-      const Index face = count == 3 ? faces_++ : farther_off;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Index a = corners[k], b = corners[(k + 1) % 3];
-        if (is_reached(a) && is_reached(b)) sides.push_back({edge_of(a, b), face});
+      for (const Index w : mesh_.faces[f]) {
+        if (w > v && is_reached(w)) sides.push_back({w, number_of(f)});
       }
     }
-  }
-  std::ranges::sort(sides);
-  std::vector<Chord> result;
-  for (std::size_t k = 0, next = 0; k < sides.size(); k = next) {
-    const auto [a, b] = sides[k].ends;
-    while (next < sides.size() && sides[next].ends == sides[k].ends) ++next;
-    if (before_[a] == b || before_[b] == a) continue;
-    const double edge = (mesh_.positions[a] - mesh_.positions[b]).norm();
-    const Index other = next - k > 1 ? sides[k + 1].face : farther_off;
-    result.push_back({distance_[a] + distance_[b] + edge, {a, b}, {sides[k].face, other}});
+    std::ranges::sort(sides);
+    for (std::size_t k = 0, next = 0; k < sides.size(); k = next) {
+      const Index w = sides[k].end;
+      while (next < sides.size() && sides[next].end == w) ++next;
+      if (before_[v] == w || before_[w] == v) continue;
+      const double edge = (mesh_.positions[v] - mesh_.positions[w]).norm();
+      const Index other = next - k > 1 ? sides[k + 1].face : farther_off;
+      result.push_back({distance_[v] + distance_[w] + edge, {v, w}, {sides[k].face, other}});
+    }
   }
   return result;
 }
@@ -99,19 +104,38 @@ std::vector<Index> LoopSearch::loop_of(const Chord& chord) const {
   return loop;
 }
 
+std::vector<Index> LoopSearch::thinned_out(std::span<const Index> places, double distance) {
+  std::vector<std::uint8_t> is_covered(mesh_.positions.size(), 0);
+  std::vector<Index> some;
+  for (const Index v : places) {
+    if (is_covered[v] || around_[v].empty()) continue;
+    some.push_back(v);
+    reach_from(v, distance);
+    for (const Index w : reached_) is_covered[w] = 1;
+  }
+  return some;
+}
+
 std::vector<std::vector<Index>> LoopSearch::near(Index vertex, double distance, double longest) {
   reach_from(vertex, distance + longest / 2);
   std::vector<Chord> all = chords();
+  // Faces are joined across chords as long as that closes no ring of faces. A chord that is left
+  // runs around a ring.
+  const auto rings = [&](const auto& take) {
+    UnionFind joined(faces_);
+    for (const Chord& chord : all) {
+      if (!joined.unite(chord.sides[0], chord.sides[1])) take(chord);
+    }
+  };
+  bool are_any = false;
+  rings([&](const Chord&) { are_any = true; });
+  std::vector<std::vector<Index>> loops;
+  if (!are_any) return loops;
+  // Those across the longest are joined first.
   std::ranges::sort(all, [](const Chord& a, const Chord& b) {
     return std::tie(a.loop, a.ends) > std::tie(b.loop, b.ends);
   });
-  // Faces are joined across the longest chords first, as long as that closes no ring of faces. A
-  // chord that is left runs around a ring.
-  UnionFind joined(faces_);
-  std::vector<std::vector<Index>> loops;
-  for (const Chord& chord : all) {
-    if (!joined.unite(chord.sides[0], chord.sides[1])) loops.push_back(loop_of(chord));
-  }
+  rings([&](const Chord& chord) { loops.push_back(loop_of(chord)); });
   return loops;
 }
 

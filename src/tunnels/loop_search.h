@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "mesh/vertex_faces.h"
@@ -20,13 +21,10 @@ class LoopSearch {
   /// paths that it is made of. (Erickson and Whittlesey 2005, Greedy optimal homotopy and homology
   /// generators, on what lies within `distance` and half of `longest`.)
   std::vector<std::vector<Index>> near(Index vertex, double distance, double longest);
-  /// Calls body(v) for the vertices within a distance of that where near() was last.
-  template <typename Body>
-  void each_within(double distance, const Body& body) const {
-    for (const Index v : reached_) {
-      if (distance_[v] <= distance) body(v);
-    }
-  }
+
+  /// Some of the places, so that every one of them is within a distance of one of these. Those that
+  /// no face uses are left out.
+  std::vector<Index> thinned_out(std::span<const Index> places, double distance);
 
  private:
   /// An edge that no shortest path takes, and the faces beside it.
@@ -41,6 +39,7 @@ class LoopSearch {
   /// Of the edges between vertices that were reached. All that lies farther off counts as one face,
   /// the first.
   std::vector<Chord> chords();
+  Index number_of(Index face);
   std::vector<Index> loop_of(const Chord& chord) const;
 
   const Mesh& mesh_;
@@ -48,9 +47,11 @@ class LoopSearch {
   std::uint32_t round_ = 0;
   std::vector<std::uint32_t> round_of_;  // in which a vertex was last reached
   std::vector<double> distance_;
-  std::vector<Index> before_;   // on the shortest path
-  std::vector<Index> reached_;  // all of this round
-  Index faces_ = 0;             // among them, and what lies farther off
+  std::vector<Index> before_;                 // on the shortest path
+  std::vector<Index> reached_;                // all of this round
+  std::vector<std::uint32_t> round_of_face_;  // in which a face last got its number
+  std::vector<Index> number_of_face_;
+  Index faces_ = 0;  // with a number: all corners were reached; and what lies farther off
 };
 
 }  // namespace meshgrain

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "meshgrain/remesh.h"
+#include "remesh/flaws.h"
+
+namespace meshgrain {
+
+/// A mesh, and what was learnt while it was made.
+struct Made {
+  RemeshResult result;
+  Faults faults;
+  double side;                     // of a face, in the mean
+  std::vector<std::string> notes;  // of the input, before there were faces
+  Mesh seamed;                     // the input, if much of its border is seams; else empty
+  bool has_marks;                  // besides those of creases that were found
+};
+
+using Make = std::function<Made(Mesh input, const RemeshOptions&, const Context&)>;
+
+/// Where faces have faults, what there is of a simpler surface: that is kept, with a note, if it
+/// has clearly fewer of them. Topology gives way to validity:
+/// - the sides of seams hang together, as of the slits that scans have which were put together of
+///   slices, if faces are inverted;
+/// - there are no tunnels near the faults that are hardly wider than faces, and far less wide than
+///   the surface, as bolt holes of a part may be, or the handles that noise leaves on a scan.
+void try_simpler_topology(Made& made, const RemeshOptions& options, const Make& make,
+                          const Context& context);
+
+}  // namespace meshgrain

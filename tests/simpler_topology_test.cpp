@@ -1,0 +1,85 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "mesh/vertex_faces.h"
+#include "meshgrain/remesh.h"
+#include "meshgrain/shapes.h"
+#include "meshgrain/statistics.h"
+#include "same_topology.h"
+
+namespace meshgrain {
+namespace {
+
+/// Cuts a closed surface open along two edges around each of some vertices that lie apart: those on
+/// one side get a vertex of their own, at the same place.
+std::size_t cut_slits(Mesh& mesh, std::size_t most) {
+  const VertexFaces around = vertex_faces(mesh);
+  std::vector<bool> is_near(mesh.positions.size(), false);
+  std::size_t count = 0;
+  const auto vertices = static_cast<Index>(mesh.positions.size());
+  for (Index v = 0; v < vertices && count < most; ++v) {
+    std::map<Index, std::array<Index, 2>>
+        next;  // around v: the next neighbor, and the face between
+    bool is_free = !is_near[v];
+    for (const Index f : around[v]) {
+      const auto corners = std::as_const(mesh.faces)[f];
+      const auto at = std::ranges::find(corners, v) - corners.begin();
+      const Index after = corners[static_cast<std::size_t>(at + 1) % 3];
+      next[after] = {corners[static_cast<std::size_t>(at + 2) % 3], f};
+      is_free = is_free && !is_near[after];
+    }
+    if (!is_free) continue;
+    const auto copy = static_cast<Index>(mesh.positions.size());
+    mesh.positions.push_back(mesh.positions[v]);
+    Index w = next.begin()->first;
+    for (std::size_t k = 0; k < next.size() / 2; ++k) {
+      const auto [neighbor, face] = next[w];
+      std::ranges::replace(mesh.faces[face], v, copy);
+      w = neighbor;
+    }
+    is_near[v] = true;
+    for (const auto& [neighbor, beside] : next) is_near[neighbor] = true;
+    ++count;
+  }
+  return count;
+}
+
+/// Many slits that are shorter than faces are cuts between the parts of a scan.
+TEST(SimplerTopology, SlitsAreClosedWhereTheyWouldSpoilFaces) {
+  const Mesh whole = sample_shape("torus");
+  Mesh input = whole;
+  constexpr std::size_t slits = 200;
+  ASSERT_EQ(cut_slits(input, slits), slits);
+  ASSERT_EQ(mesh_statistics(input).boundary_loops, slits);
+  RemeshOptions options;
+  options.face_count = 400;
+  const RemeshResult coarse = remesh(input, options);
+  const MeshStatistics s = mesh_statistics(coarse.mesh);
+  made::expect_same_topology(s, mesh_statistics(whole));
+  EXPECT_EQ(s.inverted_quads, 0u);
+  EXPECT_NEAR(static_cast<double>(s.faces), 400, 4);
+  EXPECT_TRUE(std::ranges::any_of(coarse.report.notes, [](const std::string& note) {
+    return note.starts_with("merged 200 vertices along seams");
+  }));
+  EXPECT_EQ(coarse.report.input_vertices, input.positions.size());
+}
+
+TEST(SimplerTopology, SlitsStayWhereThereIsRoom) {
+  Mesh input = sample_shape("torus");
+  constexpr std::size_t slits = 20;
+  ASSERT_EQ(cut_slits(input, slits), slits);
+  RemeshOptions options;
+  options.face_count = 5'000;
+  const RemeshResult result = remesh(input, options);
+  made::expect_same_topology(mesh_statistics(result.mesh), mesh_statistics(input));
+  EXPECT_EQ(mesh_statistics(result.mesh).inverted_quads, 0u);
+}
+
+}  // namespace
+}  // namespace meshgrain
