@@ -99,6 +99,7 @@ void make_mesh(Pipeline& pipeline) {
   pipeline.try_coarser_lattice();
   pipeline.try_less_regular();
   pipeline.untie_knots();
+  pipeline.try_more_regular();
   pipeline.note_odd_borders();
   pipeline.note_scraps();
   pipeline.note_parted_hexagons();

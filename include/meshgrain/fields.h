@@ -84,6 +84,8 @@ struct SolverOptions {
   /// nodes are short; but on each of the three finest levels only one, or two below 30,000 nodes,
   /// as more change nothing there that could be measured.
   int sweeps = 0;
+  /// How many times as many on levels coarser than the fourth, if that is 0. They cost little.
+  int coarse_factor = 1;
   Schedule schedule = Schedule::blocks;
   bool multiresolution = true;  ///< false: sweeps on the finest level only (Figure 8).
   std::uint64_t seed = 0;       ///< Of the random start.

@@ -163,9 +163,10 @@ class Multiresolution {
     constexpr int fine_levels = 3;
     constexpr std::size_t large = 30000;  // nodes: with enough levels below the fine ones
     if (!options_.multiresolution) return 6;
+    if (level_ < fine_levels) return hierarchy_.levels[0].size() < large ? 2 : 1;
     // In short blocks less is passed on by a sweep.
-    if (level_ >= fine_levels) return coloring().block_size < BlockColoring::longest ? 8 : 6;
-    return hierarchy_.levels[0].size() < large ? 2 : 1;
+    const int sweeps = coloring().block_size < BlockColoring::longest ? 8 : 6;
+    return level_ == fine_levels ? sweeps : options_.coarse_factor * sweeps;
   }
 
   bool is_active(std::size_t i) const { return is_active(static_cast<std::size_t>(level_), i); }

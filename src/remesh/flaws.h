@@ -37,10 +37,14 @@ struct Flaws {
 
   bool any() const { return lost_faces > 0 || flatness > 0 || faults > 0; }
 
+  bool are_no_more_than(const Flaws& other) const {
+    return lost_faces <= other.lost_faces && flatness <= other.flatness && faults <= other.faults &&
+           all_faults <= other.all_faults;
+  }
+
   /// None of them is more, and one is less.
   bool are_fewer_than(const Flaws& other) const {
-    return lost_faces <= other.lost_faces && flatness <= other.flatness && faults <= other.faults &&
-           all_faults <= other.all_faults &&
+    return are_no_more_than(other) &&
            (lost_faces < other.lost_faces || flatness < other.flatness || faults < other.faults);
   }
 };

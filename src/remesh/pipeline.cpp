@@ -295,6 +295,7 @@ void Pipeline::orient() {
     OrientationOptions orientation;
     static_cast<SolverOptions&>(orientation) = options_.solver;
     orientation.seed += other_start_;
+    if (is_thorough_) orientation.coarse_factor = 8;
     orientation.rosy = options_.rosy != 0 ? options_.rosy : posy_of(options_.faces);
     orientation.energy = options_.orientation_energy;
     const auto edge_length = static_cast<float>(mean_length());
@@ -381,6 +382,7 @@ void Pipeline::change_target(const RemeshOptions& options) {
   const bool left_out_creases = std::exchange(leaves_out_creases_, false);
   divides_borders_ = false;
   const bool started_elsewhere = std::exchange(other_start_, 0) != 0;
+  const bool was_thorough = std::exchange(is_thorough_, false);
   wanted_ = options;
   aim_at(options.faces);
   find_lines();
@@ -388,7 +390,7 @@ void Pipeline::change_target(const RemeshOptions& options) {
   size_faces();
   keeps_singularities_.clear();
   crossings_of_surface_.reset();  // what is near to them depends on the size of a face
-  if (left_out_creases == leaves_out_creases_ && !started_elsewhere) return;
+  if (left_out_creases == leaves_out_creases_ && !started_elsewhere && !was_thorough) return;
   complete_levels();
   orient();
 }

@@ -19,6 +19,7 @@
 #include "meshgrain/finish.h"
 #include "meshgrain/hierarchy.h"
 #include "meshgrain/remesh.h"
+#include "meshgrain/statistics.h"
 #include "remesh/flaws.h"
 #include "remesh/stages.h"
 #include "remesh/target.h"
@@ -27,7 +28,7 @@ namespace meshgrain {
 
 /// The stages of remesh(), in their order: each leaves what the next ones need. Those up to the
 /// graph are in pipeline_surface.cpp, those from the fields on in pipeline_faces.cpp, and what is
-/// done where these are not good enough in pipeline_attempts.cpp.
+/// done where these are not good enough in pipeline_attempts.cpp and pipeline_regularity.cpp.
 class Pipeline {
  public:
   Pipeline(const Mesh& input, const RemeshOptions& options, const Context& context);
@@ -80,6 +81,10 @@ class Pipeline {
   /// Where more regularity than by default bends the grid into faults, what there is with half of
   /// the excess, or none: the first is kept that has less than half as many.
   void try_less_regular();
+  /// Where there are far more irregular vertices than the orientation field needs, what there is
+  /// with more regularity than was asked for: that is kept if it has fewer of them, and neither
+  /// more flaws nor worse shapes.
+  void try_more_regular();
 
   /// Pure quads: irregular vertices that cancel each other out go.
   void untie_knots();
@@ -143,6 +148,7 @@ class Pipeline {
     OrientationField orientation;
     std::vector<EnergyRecord> orientation_energies;
     std::uint64_t other_start;
+    bool is_thorough;
     bool leaves_out_creases;
     bool divides_borders;
     BorderLoops borders;
@@ -158,6 +164,10 @@ class Pipeline {
   void put_back(Attempt&& attempt);
   /// As all is now. Returns whether there are any.
   bool make_faces_again();
+  bool is_needlessly_irregular(std::size_t irregular) const;
+  /// Faces as regular as is aimed at now. Returns whether they are clearly more so than those
+  /// before, and no worse.
+  bool make_more_regular(const MeshStatistics& before, const Flaws& flaws_before);
   /// Makes the faces once more, after a change of what they are made from, and smooths them. Keeps
   /// what was before, and returns false, unless these are better.
   bool try_again(const std::function<bool()>& is_better, const std::function<void()>& change = {});
@@ -290,6 +300,7 @@ class Pipeline {
   EdgeLength free_lengths_;            // what lengths_ would be without these borders
   GuideLines guides_;                  // that edges follow
   std::vector<GuideRun> soft_guides_;  // that fields are drawn to
+  bool is_thorough_ = false;           // the orientation field, over flat sides as well
   bool leaves_out_creases_ = false;
   bool divides_borders_ = false;
   FeatureLines features_;

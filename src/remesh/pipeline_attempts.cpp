@@ -266,22 +266,6 @@ void Pipeline::try_coarser_lattice() {
   try_again([&] { return faults() < before; }, [&] { aim_at(options_.faces); });
 }
 
-void Pipeline::try_less_regular() {
-  const double moderate = RemeshOptions().regularity;
-  if (is_cloud_ || options_.smoothing == 0 || regularity_ <= moderate) return;
-  const std::size_t before = faults();
-  if (before == 0 || before > extraction_.mesh.faces.size() / Flaws::hopeless) return;
-  for (const double share : {0.5, 0.0}) {
-    regularity_ = moderate + share * (options_.regularity - moderate);
-    // Where the input passes through itself there are always some.
-    if (!try_again([&] { return faults() < before / 2; })) continue;
-    result_.report.notes.emplace_back(
-        "less regular than was asked for: faces would be inverted or pass through each other");
-    break;
-  }
-  regularity_ = options_.regularity;
-}
-
 bool Pipeline::make_faces_again() {
   complete_levels();
   size_faces();
@@ -311,6 +295,7 @@ Pipeline::Attempt Pipeline::take_attempt() {
           fields().orientation,
           report.orientation_energies,
           other_start_,
+          is_thorough_,
           leaves_out_creases_,
           divides_borders_,
           borders_,
@@ -330,6 +315,7 @@ void Pipeline::put_back(Attempt&& attempt) {
   fields().orientation = std::move(attempt.orientation);
   result_.report.orientation_energies = std::move(attempt.orientation_energies);
   other_start_ = attempt.other_start;
+  is_thorough_ = attempt.is_thorough;
   leaves_out_creases_ = attempt.leaves_out_creases;
   divides_borders_ = attempt.divides_borders;
   borders_ = std::move(attempt.borders);

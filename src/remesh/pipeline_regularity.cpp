@@ -1,0 +1,92 @@
+// Where another regularity than the one that was asked for makes better faces.
+
+#include <utility>
+
+#include "meshgrain/singularities.h"
+#include "meshgrain/statistics.h"
+#include "remesh/pipeline.h"
+
+namespace meshgrain {
+namespace {
+
+/// Of the shapes of faces: neither areas nor angles are clearly less even, nor both together.
+bool are_no_worse(const MeshStatistics& now, const MeshStatistics& before) {
+  constexpr double clearly = 1.03;
+  return now.area_sigma <= clearly * before.area_sigma &&
+         now.angle_sigma <= clearly * before.angle_sigma &&
+         now.area_sigma * now.angle_sigma <= before.area_sigma * before.angle_sigma;
+}
+
+}  // namespace
+
+void Pipeline::try_less_regular() {
+  const double moderate = RemeshOptions().regularity;
+  if (is_cloud_ || options_.smoothing == 0 || regularity_ <= moderate) return;
+  const std::size_t before = faults();
+  if (before == 0 || before > extraction_.mesh.faces.size() / Flaws::hopeless) return;
+  for (const double share : {0.5, 0.0}) {
+    regularity_ = moderate + share * (options_.regularity - moderate);
+    // Where the input passes through itself there are always some.
+    if (!try_again([&] { return faults() < before / 2; })) continue;
+    result_.report.notes.emplace_back(
+        "less regular than was asked for: faces would be inverted or pass through each other");
+    break;
+  }
+  regularity_ = options_.regularity;
+}
+
+bool Pipeline::is_needlessly_irregular(std::size_t irregular) const {
+  // Over parts with large flat sides rows end that need not: singularities of positions that lie
+  // far apart cancel out there at no cost of shape, other than what their ways cost suggests.
+  constexpr double needless = 1.5;
+  constexpr std::size_t few = 8;
+  const std::size_t least =
+      orientation_singularities(surface_, graph().normals, result_.fields.orientation, context_)
+          .size();
+  return static_cast<double>(irregular) >
+         needless * static_cast<double>(least) + static_cast<double>(few);
+}
+
+void Pipeline::try_more_regular() {
+  const bool may_try = options_.faces == OutputFaces::quads && may_make_others() &&
+                       may_be_irregular() && !is_cloud_ && nodes_are_vertices_ &&
+                       options_.sizing.is_uniform() && borders_.empty() &&
+                       options_.fields == nullptr;
+  if (!may_try) return;
+  const MeshStatistics before = mesh_statistics(extraction_.mesh);
+  if (!is_needlessly_irregular(before.singularities)) return;
+  const Flaws flaws_before = flaws(lost_surface().faces);
+  for (const double regularity : {1.0, 0.75}) {
+    regularity_ = regularity;
+    Attempt attempt = take_attempt();
+    if (make_more_regular(before, flaws_before)) break;
+    put_back(std::move(attempt));
+  }
+  regularity_ = options_.regularity;
+}
+
+bool Pipeline::make_more_regular(const MeshStatistics& before, const Flaws& flaws_before) {
+  const auto are_fewer = [&](const MeshStatistics& now, double than) {
+    return static_cast<double>(now.singularities) <=
+           than * static_cast<double>(before.singularities);
+  };
+  // What will not do shows early: some more irregular vertices are mended away later on, and angles
+  // become more even, but areas hardly do.
+  const auto are_promising = [&] {
+    constexpr double hardly = 1.05;
+    return mesh_statistics(extraction_.mesh).area_sigma <= hardly * before.area_sigma;
+  };
+  is_thorough_ = true;
+  complete_levels();
+  orient();
+  if (!make_faces_again() || !are_fewer(mesh_statistics(extraction_.mesh), 1)) return false;
+  if (!smooth_faces_if(are_promising)) return false;
+  untwist_faces();
+  untie_knots();
+  constexpr double clearly = 0.9;
+  const MeshStatistics now = mesh_statistics(extraction_.mesh);
+  return are_fewer(now, clearly) && are_no_worse(now, before) &&
+         flaws(lost_surface().faces).are_no_more_than(flaws_before);
+}
+
+}  // namespace meshgrain
