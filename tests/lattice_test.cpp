@@ -1,12 +1,17 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <vector>
 
 #include "extract/cancel_singularities.h"
 #include "extract/free_points.h"
 #include "extract/lattice_pieces.h"
 #include "extract/lattice_triangle.h"
+#include "extract/link_condition.h"
+#include "extract/polygon_map.h"
 #include "made_lattice.h"
 #include "meshgrain/shapes.h"
 
@@ -123,6 +128,23 @@ TEST(FreePoints, LieInTheMiddleOfLargeTriangles) {
       EXPECT_EQ(point->t[k] + point->to_apex.t[k], apex.t[k]);
     }
   });
+}
+
+/// A sphere of four triangles, with two edges between the same two vertices: around a thin neck.
+TEST(LinkCondition, OneOfTwoEdgesBetweenTheSameVerticesStays) {
+  const std::vector<Vec3> positions{{0, 0, 0}, {2, 0, 0}, {1, 1, 0}, {1, -1, 0}};
+  const std::vector<Vec3> normals(positions.size(), Vec3::UnitZ());
+  const std::vector<std::array<Index, 2>> edges{{0, 2}, {2, 1}, {1, 3}, {3, 0}};
+  PolygonMap map(positions, normals, edges);
+  const Index first = map.add_edge(map.halfedge(0, 2), map.halfedge(1, 3));
+  LinkCondition link;
+  const Index second = map.add_edge(map.halfedge(0, 3), map.halfedge(1, 2));
+  const std::vector<std::uint8_t> holes(map.halfedges(), 0);
+  for (const Index h : {first, second}) {
+    ASSERT_EQ(map.degree(h), 3u);
+    EXPECT_FALSE(link.holds(map, holes, h));
+    EXPECT_FALSE(link.holds(map, holes, PolygonMap::twin(h)));
+  }
 }
 
 }  // namespace

@@ -19,7 +19,14 @@ class LinkCondition {
       stamp_[v] = round_;
       return false;
     });
-    const Star b = visit(map, holes, t, [&](Index v) { return stamp_[v] == round_; });
+    // Around a narrow neck there may be another edge between the two, which would become a loop.
+    const Index origin = map.origin(h);
+    std::size_t between = 0;
+    const Star b = visit(map, holes, t, [&](Index v) {
+      between += v == origin;
+      return stamp_[v] == round_;
+    });
+    if (between > 1) return false;
     if (b.common != (rim_edge ? 1u : 2u)) return false;
     if (a.rim && b.rim && !rim_edge) return false;
     return a.valence + a.rim > 3 || b.valence + b.rim > 3;
