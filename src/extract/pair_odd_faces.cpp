@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <queue>
 #include <utility>
 #include <vector>
@@ -75,7 +76,10 @@ class OddFaces {
   void search(Index from, Reached& reached, const Found& found) const;
   std::vector<std::vector<Match>> matches();
   void join(Index from, Index to);
-  bool contract_end(Index end);
+  bool is_broken(const std::vector<Index>& exits) const {
+    return std::ranges::any_of(exits, [&](Index h) { return map_.removed(h); });
+  }
+  std::optional<Index> contract_end(Index end, Index& other);
   bool take_end(Index end, Index turned_to);
 
   PolygonMap& map_;
@@ -238,9 +242,19 @@ void OddFaces::join(Index from, Index to) {
   });
   // A way that goes around something may come back over an edge, which has to stay then.
   if (!comes_back(exits)) {
-    if (!exits.empty() && contract_end(exits.back())) exits.pop_back();
-    if (!exits.empty() && !to_border && contract_end(PolygonMap::twin(exits[0]))) {
-      exits.erase(exits.begin());
+    // Where the two lie side by side and the way goes around, it may lose an edge with an end.
+    if (!exits.empty()) {
+      if (const auto rest = contract_end(exits.back(), to)) {
+        exits.pop_back();
+        if (is_broken(exits)) return join(*rest, to);
+        from = *rest;
+      }
+    }
+    if (!exits.empty() && !to_border) {
+      if (const auto rest = contract_end(PolygonMap::twin(exits[0]), from)) {
+        exits.erase(exits.begin());
+        if (is_broken(exits)) return join(from, *rest);
+      }
     }
     if (exits.size() == 1 && !to_border && repair_.may_join_triangles(exits[0])) {
       map_.remove_edge(exits[0]);
@@ -262,9 +276,10 @@ void OddFaces::join(Index from, Index to) {
 }
 
 /// Where a way starts in a triangle, or ends there, and crosses a line at once: the triangle's edge
-/// there vanishes, and the triangle with it.
-bool OddFaces::contract_end(Index end) {
-  if (!repair_.may_contract_line(end)) return false;
+/// there vanishes, and the triangle with it. Returns a halfedge of the face beyond, which is odd
+/// instead; `other` stands for the one at the other end of the way.
+std::optional<Index> OddFaces::contract_end(Index end, Index& other) {
+  if (!repair_.may_contract_line(end)) return std::nullopt;
   const Index other_side = PolygonMap::twin(end), beyond = map_.next(other_side);
   const bool is_both = map_.degree(other_side) == 3;
   // Of the other two edges of a triangle one vanishes: what stood for the face beyond may, too.
@@ -276,9 +291,10 @@ bool OddFaces::contract_end(Index end) {
   for (const auto& [a, b] : others) {
     const Index gone = map_.removed(a) ? a : b, left = gone == a ? b : a;
     std::ranges::replace(faces_, PolygonMap::twin(gone), left);
+    if (other == PolygonMap::twin(gone)) other = left;
   }
   if (!is_both && !is_odd(beyond)) repair_.cut_into_quads(beyond);
-  return true;
+  return beyond;
 }
 
 /// Where it turns beside a triangle at its end, and the new vertices on both sides of the turn
