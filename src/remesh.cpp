@@ -75,9 +75,8 @@ void check(const RemeshOptions& options) {
 }
 
 /// All that does not depend on the number of faces, but as fine as the target needs it: what it
-/// leaves can serve several meshes.
-void prepare(Pipeline& pipeline, Mesh input) {
-  pipeline.clean_up(std::move(input));
+/// leaves can serve several meshes. The surface was cleaned up.
+void prepare(Pipeline& pipeline) {
   pipeline.sharpen();
   pipeline.coarsen();
   pipeline.refine();
@@ -108,13 +107,14 @@ void make_mesh(Pipeline& pipeline) {
 
 Made make(Mesh input, const RemeshOptions& options, const Context& context) {
   Pipeline pipeline(input, options, context);
-  prepare(pipeline, std::move(input));
+  pipeline.clean_up(std::move(input));
+  Mesh seamed = may_be_simpler(options) ? pipeline.seamed_surface() : Mesh();
+  prepare(pipeline);
   std::vector<std::string> notes = pipeline.report().notes;
   make_mesh(pipeline);
   Faults faults = pipeline.find_faults();
   const double side = pipeline.face_side();
   const bool has_marks = pipeline.has_marks() || pipeline.is_sharpened();
-  Mesh seamed = pipeline.take_seamed();
   return {std::move(pipeline).result(),
           std::move(faults),
           side,
@@ -125,7 +125,11 @@ Made make(Mesh input, const RemeshOptions& options, const Context& context) {
 
 /// One half of a mesh, whose tunnels must be those of the other.
 RemeshResult remesh_half(Mesh input, const RemeshOptions& options, const Context& context) {
-  return make(std::move(input), options, context).result;
+  Pipeline pipeline(input, options, context);
+  pipeline.clean_up(std::move(input));
+  prepare(pipeline);
+  make_mesh(pipeline);
+  return std::move(pipeline).result();
 }
 
 RemeshResult remesh_whole(Mesh input, const RemeshOptions& options, const Context& context) {
@@ -160,7 +164,8 @@ std::vector<RemeshResult> remesh_levels(Mesh input, std::span<const std::size_t>
   check(options);
   check_memory(input, options, context);
   Pipeline pipeline(input, options, context);
-  prepare(pipeline, std::move(input));
+  pipeline.clean_up(std::move(input));
+  prepare(pipeline);
   const RemeshReport prepared = pipeline.report();
   std::vector<std::size_t> order(face_counts.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

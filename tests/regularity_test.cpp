@@ -31,8 +31,7 @@ TEST(Regularity, AtOneOnlyOrientationSingularitiesAreLeft) {
   }
 }
 
-/// Rows of faces may end in the middle of a flat side as both fields start from chance: without
-/// that, they are straight.
+/// Over large flat sides crosses are easily left tilted, and rows of faces then end in the middle.
 TEST(Regularity, PlatesHaveStraightRows) {
   const Eigen::Vector3f sizes[] = {{350, 350, 3}, {250, 210, 3}, {200, 100, 1}};
   for (const Eigen::Vector3f& size : sizes) {

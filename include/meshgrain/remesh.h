@@ -74,8 +74,8 @@ struct RemeshOptions {
 
   /// Bytes that a program which only remeshes this may have in memory, at its peak. What may take
   /// more is refused at once, by an estimate that is rather too high than too low, and leaves out
-  /// whatever else the program holds. With a limit no copy of the input is kept for what may be
-  /// wrong with the faces, as where its seams lie close. 0: no limit.
+  /// whatever else the program holds. With a limit no copy of the input is kept that its seams
+  /// could be joined in. 0: no limit.
   std::size_t memory_limit = 0;
 
   bool count_singularities = true;  ///< For the report: takes a look at every face.

@@ -14,8 +14,10 @@ struct SeamReport {
   /// meshes that have several normals or texture coordinates at a vertex.
   std::size_t seam_edges = 0;
 
-  /// Whether they are more than where pieces touch by chance.
-  bool are_many() const { return seam_edges > 0 && 4 * seam_edges >= border_edges; }
+  bool are_many() const {
+    constexpr std::size_t many = 4;  // one in so many: pieces may touch by chance
+    return seam_edges > 0 && many * seam_edges >= border_edges;
+  }
 };
 
 /// Of the edges of the border, which are given, those that would go if vertices at one place were

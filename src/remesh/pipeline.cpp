@@ -110,11 +110,6 @@ bool Pipeline::may_leave_out_creases() const {
          nodes_are_vertices_;
 }
 
-Mesh Pipeline::take_seamed() {
-  leave(frame_, seamed_);
-  return std::exchange(seamed_, {});
-}
-
 bool Pipeline::has_marks() const {
   return is_coarsened_ ? had_marks_ : !surface_.marked_edges.empty();
 }

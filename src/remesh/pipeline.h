@@ -35,6 +35,9 @@ class Pipeline {
 
   /// A clean surface of triangles (or points), about one unit large.
   void clean_up(Mesh input);
+  /// A copy of that, in input units, if much of its border is seams and it is not too large; else
+  /// empty.
+  Mesh seamed_surface() const;
 
   /// Takes the noise out of a scan of a mechanical part.
   void sharpen();
@@ -91,9 +94,6 @@ class Pipeline {
 
   /// When all is done. Of more than 30,000 faces only if one is inverted.
   Faults find_faults();
-  /// The input, cleaned, if much of its border is seams, and it has not too many vertices to be
-  /// kept; else empty.
-  Mesh take_seamed();
   /// Whether the input has marked edges.
   bool has_marks() const;
   bool is_sharpened() const { return is_sharpened_; }
@@ -164,7 +164,7 @@ class Pipeline {
   void put_back(Attempt&& attempt);
   /// As all is now. Returns whether there are any.
   bool make_faces_again();
-  bool is_needlessly_irregular(std::size_t irregular) const;
+  bool is_needlessly_irregular() const;
   /// Faces as regular as is aimed at now. Returns whether they are clearly more so than those
   /// before, and no worse.
   bool make_more_regular(const MeshStatistics& before, const Flaws& flaws_before);
@@ -285,7 +285,7 @@ class Pipeline {
   bool is_sharpened_ = false;
   bool is_coarsened_ = false;  // its creases are marked since then, and
   bool had_marks_ = false;     // others were before
-  Mesh seamed_;                // see take_seamed()
+  bool is_seamed_ = false;     // much of its border
   Mesh surface_;
   std::optional<BoxCells> crossings_of_surface_;  // once that is asked for
   VertexFaces around_;                            // its vertices, once it has a graph

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "mesh/edges.h"
 #include "meshgrain/singularities.h"
 #include "meshgrain/statistics.h"
 #include "remesh/pipeline.h"
@@ -35,16 +36,19 @@ void Pipeline::try_less_regular() {
   regularity_ = options_.regularity;
 }
 
-bool Pipeline::is_needlessly_irregular(std::size_t irregular) const {
+bool Pipeline::is_needlessly_irregular() const {
   // Over parts with large flat sides rows end that need not: singularities of positions that lie
   // far apart cancel out there at no cost of shape, other than what their ways cost suggests.
   constexpr double needless = 1.5;
   constexpr std::size_t few = 8;
+  const VertexDegrees degrees = vertex_degrees(extraction_.mesh, edges_of(extraction_.mesh));
+  std::size_t irregular = 0;
+  for (std::size_t v = 0; v < degrees.neighbours.size(); ++v) irregular += degrees.irregular(v);
+  if (irregular <= few) return false;
   const std::size_t least =
       orientation_singularities(surface_, graph().normals, result_.fields.orientation, context_)
           .size();
-  return static_cast<double>(irregular) >
-         needless * static_cast<double>(least) + static_cast<double>(few);
+  return static_cast<double>(irregular - few) > needless * static_cast<double>(least);
 }
 
 void Pipeline::try_more_regular() {
@@ -52,16 +56,22 @@ void Pipeline::try_more_regular() {
                        may_be_irregular() && !is_cloud_ && nodes_are_vertices_ &&
                        options_.sizing.is_uniform() && borders_.empty() &&
                        options_.fields == nullptr;
-  if (!may_try) return;
+  if (!may_try || !is_needlessly_irregular()) return;
   const MeshStatistics before = mesh_statistics(extraction_.mesh);
-  if (!is_needlessly_irregular(before.singularities)) return;
   const Flaws flaws_before = flaws(lost_surface().faces);
+  Attempt as_asked = take_attempt();
+  is_thorough_ = true;
+  complete_levels();
+  orient();
+  bool is_better = false;
   for (const double regularity : {1.0, 0.75}) {
     regularity_ = regularity;
-    Attempt attempt = take_attempt();
-    if (make_more_regular(before, flaws_before)) break;
-    put_back(std::move(attempt));
+    Attempt oriented = take_attempt();
+    is_better = make_more_regular(before, flaws_before);
+    if (is_better) break;
+    put_back(std::move(oriented));
   }
+  if (!is_better) put_back(std::move(as_asked));
   regularity_ = options_.regularity;
 }
 
@@ -76,9 +86,6 @@ bool Pipeline::make_more_regular(const MeshStatistics& before, const Flaws& flaw
     constexpr double hardly = 1.05;
     return mesh_statistics(extraction_.mesh).area_sigma <= hardly * before.area_sigma;
   };
-  is_thorough_ = true;
-  complete_levels();
-  orient();
   if (!make_faces_again() || !are_fewer(mesh_statistics(extraction_.mesh), 1)) return false;
   if (!smooth_faces_if(are_promising)) return false;
   untwist_faces();

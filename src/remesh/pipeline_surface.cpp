@@ -35,7 +35,6 @@ std::vector<std::uint8_t> picked(const std::vector<std::uint8_t>& flags,
 }  // namespace
 
 void Pipeline::clean_up(Mesh input) {
-  constexpr std::size_t most_kept = 1 << 20;  // vertices: scans of many more have faces enough
   // What is read comes in any order; all that looks at neighbours is quicker with these nearby.
   constexpr std::size_t many = 1 << 16;
   if (input.positions.size() > many && input.faces.uniform_degree() >= 3 && !is_torn(input)) {
@@ -57,11 +56,19 @@ void Pipeline::clean_up(Mesh input) {
       add_notes(contract_border_of(surface_, border, context_));
       const SeamReport seams = find_seams(surface_, border);
       add_notes(describe(seams));
-      const bool may_be_kept = options_.memory_limit == 0 && surface_.positions.size() <= most_kept;
-      if (seams.are_many() && may_be_kept) seamed_ = surface_;
+      is_seamed_ = seams.are_many();
     }
     drop_pieces();
   });
+}
+
+Mesh Pipeline::seamed_surface() const {
+  constexpr std::size_t most = 1 << 20;  // vertices: scans of many more have faces enough
+  const bool may_be_copied = options_.memory_limit == 0 && surface_.positions.size() <= most;
+  if (!is_seamed_ || !may_be_copied) return {};
+  Mesh surface = surface_;
+  leave(frame_, surface);
+  return surface;
 }
 
 void Pipeline::add_notes(const std::vector<std::string>& notes) {

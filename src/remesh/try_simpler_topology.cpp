@@ -13,14 +13,6 @@
 namespace meshgrain {
 namespace {
 
-/// Borders and guides that stay, and values of vertices, are those of the surface as it is.
-bool may_be_simpler(const Made& made, const RemeshOptions& options) {
-  return !made.result.fields.surface.is_point_cloud() &&
-         options.graph.nodes == GraphNodes::vertices && options.smoothing > 0 &&
-         options.fields == nullptr && options.guides.empty() && !options.lock_borders &&
-         !options.sizing.is_by_value();
-}
-
 /// Whether faults are more than a few crossings.
 bool has_many_faults(const Made& made) {
   return made.faults.inverted > 0 ||
@@ -49,18 +41,18 @@ class SimplerTopology {
   }
 
   void run() {
+    Mesh seamed = std::exchange(made_.seamed, {});
     Made before = made_;
-    join_seams(before);
+    if (!seamed.faces.empty()) join_seams(std::move(seamed), before);
     close_tunnels(before);
     made_.result.report.stages = std::move(times_);
   }
 
  private:
   /// Tunnels may be too narrow all the same: `before` becomes what there is without seams.
-  void join_seams(Made& before) {
-    Mesh surface = std::exchange(before.seamed, {});
+  void join_seams(Mesh surface, Made& before) {
     // The two sides of a seam mostly cross a little: that alone is no reason to join them.
-    if (surface.faces.empty() || before.faults.inverted == 0) return;
+    if (before.faults.inverted == 0) return;
     const std::size_t merged = stage_("join seams", [&] { return weld(surface); });
     before = made_of(std::move(surface), before,
                      fmt::format("merged {} vertices along seams: faces of this size beside these "
@@ -102,23 +94,18 @@ class SimplerTopology {
     const RemeshReport& first = before.result.report;
     report.input_vertices = first.input_vertices;
     report.input_faces = first.input_faces;
-    // And so do the notes, but for those of the faces.
-    std::vector<std::string> notes = before.notes;
-    notes.push_back(note);
-    for (std::string& of_faces : report.notes) {
-      if (std::ranges::find(other.notes, of_faces) == other.notes.end()) {
-        notes.push_back(std::move(of_faces));
-      }
-    }
-    report.notes = std::move(notes);
+    // And so do the notes, but for those of the faces, which come last.
+    report.notes.erase(report.notes.begin(),
+                       report.notes.begin() + static_cast<std::ptrdiff_t>(other.notes.size()));
     other.notes = before.notes;
     other.notes.push_back(note);
+    report.notes.insert(report.notes.begin(), other.notes.begin(), other.notes.end());
     times_.insert(times_.end(), report.stages.begin(), report.stages.end());
     return other;
   }
 
-  void keep_if_better(const Made& other) {
-    if (other.faults.are_clearly_fewer_than(made_.faults)) made_ = other;
+  void keep_if_better(Made other) {
+    if (other.faults.are_clearly_fewer_than(made_.faults)) made_ = std::move(other);
   }
 
   Made& made_;
@@ -131,11 +118,17 @@ class SimplerTopology {
 
 }  // namespace
 
+bool may_be_simpler(const RemeshOptions& options) {
+  return options.graph.nodes == GraphNodes::vertices && options.smoothing > 0 &&
+         options.fields == nullptr && options.guides.empty() && !options.lock_borders &&
+         !options.sizing.is_by_value();
+}
+
 void try_simpler_topology(Made& made, const RemeshOptions& options, const Make& make,
                           const Context& context) {
-  if (may_be_simpler(made, options) && has_many_faults(made)) {
-    SimplerTopology(made, options, make, context).run();
-  }
+  const bool is_cloud = made.result.fields.surface.is_point_cloud();
+  if (is_cloud || !may_be_simpler(options) || !has_many_faults(made)) return;
+  SimplerTopology(made, options, make, context).run();
 }
 
 }  // namespace meshgrain
