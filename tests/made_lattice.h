@@ -26,7 +26,7 @@ inline LatticeMesh lattice(const Mesh& triangles, int posy, float edge_length,
   const PositionField position =
       solve_position(hierarchy, orientation, edge_length, position_options);
   CollapsedMesh collapsed =
-      collapse_mesh(triangles, find_features(triangles, {}, edge_length), graph, orientation,
+      collapse_mesh(triangles, {}, find_features(triangles, {}, edge_length), graph, orientation,
                     position, position_options.energy, Context());
   LatticeMesh result(std::move(collapsed.lattice), std::move(collapsed.clusters), collapsed.roots,
                      graph, orientation, position, keeps_singularities);

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "finish/crossings.h"
+#include "made_cells.h"
 #include "made_fields.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
@@ -119,46 +123,63 @@ TEST(Topology, HolesThatTouchDoNotBecomeOne) {
   }
 }
 
-/// Two cubes that share an edge: whatever vertices each has along it, the other gets them too.
-TEST(Topology, PiecesThatMeetAlongAnEdgeLeaveNoCrack) {
-  Mesh input;
-  for (const float at : {-1.0f, 0.0f}) {
-    std::vector<Index> corners;
-    for (const float z : {0.0f, 1.0f}) {
-      for (const float y : {at, at + 1}) {
-        for (const float x : {at, at + 1}) {
-          const Vec3 p(x, y, z);
-          const auto it = std::ranges::find(input.positions, p);
-          corners.push_back(static_cast<Index>(it - input.positions.begin()));
-          if (it == input.positions.end()) input.positions.push_back(p);
-        }
-      }
-    }
-    for (const std::array<std::size_t, 4>& side : {std::array<std::size_t, 4>{0, 2, 3, 1},
-                                                   {4, 5, 7, 6},
-                                                   {0, 1, 5, 4},
-                                                   {2, 6, 7, 3},
-                                                   {0, 4, 6, 2},
-                                                   {1, 3, 7, 5}}) {
-      input.faces.push_back(
-          {corners[side[0]], corners[side[1]], corners[side[2]], corners[side[3]]});
-    }
-  }
-  ASSERT_EQ(mesh_statistics(input).boundary_loops, 0u);
-  ASSERT_EQ(mesh_statistics(input).non_manifold_edges, 1u);
+/// What is made of pieces that meet along edges of more than two faces, with some luck and other.
+void expect_to_meet(const Mesh& input, std::span<const std::size_t> counts) {
+  const MeshStatistics before = mesh_statistics(input);
   for (const OutputFaces faces :
        {OutputFaces::quads, OutputFaces::quad_dominant, OutputFaces::triangles}) {
-    for (const std::size_t count : {500, 1500}) {
-      SCOPED_TRACE(std::to_string(static_cast<int>(faces)) + " " + std::to_string(count));
-      RemeshOptions options;
-      options.faces = faces;
-      options.face_count = count;
-      const MeshStatistics after = mesh_statistics(remesh(input, options).mesh);
-      EXPECT_EQ(after.boundary_loops, 0u);
-      EXPECT_GE(after.non_manifold_edges, 3u);
-      EXPECT_EQ(after.inverted_quads, 0u);
+    for (const std::size_t count : counts) {
+      for (const std::uint64_t seed : {0, 1, 2}) {
+        SCOPED_TRACE(std::to_string(static_cast<int>(faces)) + " " + std::to_string(count) + " " +
+                     std::to_string(seed));
+        RemeshOptions options;
+        options.faces = faces;
+        options.face_count = count;
+        options.solver.seed = seed;
+        const RemeshResult result = remesh(input, options);
+        const MeshStatistics after = mesh_statistics(result.mesh);
+        EXPECT_EQ(after.components, before.components);
+        EXPECT_EQ(after.boundary_loops, before.boundary_loops);
+        EXPECT_GE(after.non_manifold_edges, 3u);
+        EXPECT_EQ(after.inverted_quads, 0u);
+        EXPECT_TRUE(find_crossings(result.mesh, Context()).empty());
+        const auto wanted = static_cast<double>(count);
+        EXPECT_NEAR(static_cast<double>(after.faces), wanted, 0.0101 * wanted);
+      }
     }
   }
+}
+
+/// Two cubes that share an edge: each is whole, creases and all, and both have the same vertices
+/// along it.
+TEST(Topology, PiecesThatMeetAlongAnEdgeLeaveNoCrack) {
+  const Mesh cubes = made::surface_of_cells({{0, 0, 0}, {1, 1, 0}});
+  ASSERT_EQ(mesh_statistics(cubes).boundary_loops, 0u);
+  ASSERT_EQ(mesh_statistics(cubes).non_manifold_edges, 1u);
+  expect_to_meet(cubes, std::array<std::size_t, 2>{500, 1500});
+}
+
+TEST(Topology, StairsOfCubesMeet) {
+  expect_to_meet(made::surface_of_cells({{0, 0, 0}, {1, 1, 0}, {2, 2, 0}, {3, 3, 0}}),
+                 std::array<std::size_t, 1>{1500});
+}
+
+/// A tube goes on past the disc in its middle, whose border ends at it.
+TEST(Topology, AMembraneMeetsItsTube) {
+  expect_to_meet(made::tube_with_membrane(), std::array<std::size_t, 1>{1000});
+}
+
+/// The pieces that `--manifold` leaves apart are whole.
+TEST(Topology, CubesThatAreLeftApartAreClosed) {
+  RemeshOptions options;
+  options.face_count = 1000;
+  options.manifold = true;
+  const Mesh cubes = made::surface_of_cells({{0, 0, 0}, {1, 1, 0}});
+  const MeshStatistics after = mesh_statistics(remesh(cubes, options).mesh);
+  EXPECT_EQ(after.components, 2u);
+  EXPECT_EQ(after.euler, 4);
+  EXPECT_EQ(after.boundary_loops, 0u);
+  EXPECT_EQ(after.non_manifold_edges, 0u);
 }
 
 /// A comb, whose teeth are hardly wider than what hexagons leave out along the border.

@@ -142,7 +142,7 @@ double cost_of_passing(LatticeMesh& lattice, const std::map<Index, int>& lengths
   if (moves_apex) return std::numeric_limits<double>::infinity();
   double crossing = std::max(lattice.misfit(out, after.t) - lattice.misfit(out, before.t), 0.05);
   if (lattice.on_feature(out)) {
-    if (after.is_zero() || lattice.leaves_axis(out, after.t)) {
+    if (after.is_zero() || lattice.spoils_line(out, after.t)) {
       return std::numeric_limits<double>::infinity();
     }
     crossing *= std::max(1.0, 40.0 / lengths.at(lattice.lines[out / 2]));

@@ -20,6 +20,9 @@ struct ExtractOptions {
   /// Over a mesh: the lines of `surface` that become chains of edges, whatever the fields are; if
   /// there are none given, those of its border.
   const FeatureLines* features = nullptr;
+  /// Over a mesh: of each vertex of `surface`, the one that it was before copies were made of some,
+  /// to cut the surface where it is not manifold. Vertices that were one come together again.
+  std::vector<Index> sources;
   /// Over a mesh: leave the pieces apart that non-manifold edges and vertices of `surface` join.
   bool manifold = false;
   /// Over a mesh: how much shape may be given up for each irregular vertex that goes away, as a sum

@@ -55,7 +55,6 @@ std::size_t add_strips(Extraction& extraction, std::size_t least, std::size_t mo
   while (done < least) {
     context.check();
     const QuadStrips strips(extraction);
-    if (!strips.is_manifold()) break;
     std::vector<QuadStrip> candidates = strips.up_to(most - done);
     std::erase_if(candidates, crosses_itself);
     if (candidates.empty()) break;

@@ -50,7 +50,7 @@ void ApexLeader::find_over(Index over, double most_flaws, std::vector<Lead>& lea
   const Index t = PolygonMap::twin(over);
   if (lattice_.holes[t] || !lattice_.triangle(t).is_plane()) return;
   const Jump back = pieces_.the_other_way(over);
-  if (lattice_.leaves_axis(over, back.t)) return;
+  if (lattice_.spoils_line(over, back.t)) return;
   const LatticeMetric metric = lattice_.metric();
   const LatticePiece cone = pieces_.piece(over), next = pieces_.piece(t);
   const auto [left, entered] = pieces_.swung(over);

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "extract/rename_vertices.h"
 #include "mesh/vertex_faces.h"
 #include "util/edge_of.h"
 #include "util/sort_unique.h"
@@ -19,19 +20,21 @@ namespace {
 /// The chains of edges along the lines that are cuts: those with two vertices there.
 class Chains {
  public:
-  Chains(const Extraction& extraction, const std::vector<std::uint8_t>& on_cut)
+  Chains(const Extraction& extraction, const std::vector<std::uint8_t>& on_cut,
+         std::span<const Index> same_line)
       : mesh_(extraction.mesh) {
     std::map<Index, std::set<Index>> known;  // vertices on cuts, of each line
     for (const LineEdge& edge : extraction.line_edges) {
       for (const Index v : {edge.a, edge.b}) {
-        if (on_cut[v]) known[edge.line].insert(v);
+        if (on_cut[v]) known[same_line[edge.line]].insert(v);
       }
     }
     for (const LineEdge& edge : extraction.line_edges) {
       const auto ends = edge_of(edge.a, edge.b);
-      if (ends[0] == ends[1] || known[edge.line].size() < 2) continue;
-      lines_.try_emplace(ends, edge.line);
-      lines_of_[edge.line].push_back(ends);
+      const Index line = same_line[edge.line];
+      if (ends[0] == ends[1] || known[line].size() < 2) continue;
+      lines_.try_emplace(ends, line);
+      lines_of_[line].push_back(ends);
     }
     for (std::size_t f = 0; f < mesh_.faces.size(); ++f) {
       const auto face = mesh_.faces[f];
@@ -122,28 +125,27 @@ class Chains {
   std::map<std::array<Index, 2>, int> faces_;                     // how many each edge has
 };
 
-/// Vertices of open edges become those of another chain of their line that are close.
+/// Vertices become those of another chain of their line that are close.
 void join_close(Extraction& extraction, const std::vector<std::uint8_t>& on_cut,
-                const Context& context) {
+                std::span<const Index> same_line, const Context& context) {
   constexpr float close = 0.5f;  // of an edge
   Mesh& mesh = extraction.mesh;
-  const Chains chains(extraction, on_cut);
+  const Chains chains(extraction, on_cut, same_line);
   const VertexFaces around = vertex_faces(mesh, context);
   std::vector<Index> into(mesh.positions.size(), no_index);
   for (const auto& [line, edges] : chains.lines()) {
-    std::map<Index, float> open;  // the length of the shorter edge
+    std::map<Index, float> shorter;  // the length of the shorter edge of each vertex
     std::vector<Index> all;
     for (const auto& [a, b] : edges) {
       const float length = (mesh.positions[a] - mesh.positions[b]).norm();
       for (const Index v : {a, b}) {
         all.push_back(v);
-        if (!chains.is_open(a, b)) continue;
-        const auto [it, is_new] = open.try_emplace(v, length);
+        const auto [it, is_new] = shorter.try_emplace(v, length);
         it->second = std::min(it->second, length);
       }
     }
     sort_unique(all);
-    for (const auto& [v, length] : open) {
+    for (const auto& [v, length] : shorter) {
       const bool is_corner = std::ranges::find(extraction.corners, v) != extraction.corners.end();
       if (is_corner || into[v] != no_index) continue;
       Index nearest = no_index;
@@ -160,9 +162,10 @@ void join_close(Extraction& extraction, const std::vector<std::uint8_t>& on_cut,
       into[nearest] = nearest;  // stays, so that faces at it are known
     }
   }
-  const auto moved = [&](Index v) { return into[v] == no_index ? v : into[v]; };
-  for (Index& v : mesh.faces.corners()) v = moved(v);
-  for (LineEdge& edge : extraction.line_edges) edge = {moved(edge.a), moved(edge.b), edge.line};
+  for (Index v = 0; v < into.size(); ++v) {
+    if (into[v] == no_index) into[v] = v;
+  }
+  rename_vertices(extraction, into);
 }
 
 /// A crack beside a face: its edge from corner `k` lacks vertices.
@@ -207,12 +210,13 @@ void put_in(Faces& faces, std::span<const Index> face, const Crack& crack,
 }  // namespace
 
 void close_cracks(Extraction& extraction, const std::vector<std::uint8_t>& on_cut,
-                  std::size_t most_corners, const Context& context) {
-  join_close(extraction, on_cut, context);
+                  std::span<const Index> same_line, std::size_t most_corners,
+                  const Context& context) {
+  join_close(extraction, on_cut, same_line, context);
   Mesh& mesh = extraction.mesh;
   for (bool again = true; std::exchange(again, false);) {
     context.check();
-    const Chains chains(extraction, on_cut);
+    const Chains chains(extraction, on_cut, same_line);
     Faces faces;
     for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
       const auto face = std::as_const(mesh.faces)[f];

@@ -104,8 +104,10 @@ Extraction extract_from_mesh(const Graph& graph, const OrientationField& orienta
                            position.edge_length[0], context);
   }
   const FeatureLines& features = options.features != nullptr ? *options.features : border;
-  CollapsedMesh collapsed = collapse_mesh(*options.surface, features, graph, orientation, position,
-                                          options.energy, context);
+  CollapsedMesh collapsed = collapse_mesh(*options.surface, options.sources, features, graph,
+                                          orientation, position, options.energy, context);
+  const std::vector<Index> same_line = lines_before_cut(features, options.sources);
+  collapsed.lattice.line_stays = lines_of_cut(same_line);
   LatticeMesh lattice(std::move(collapsed.lattice), std::move(collapsed.clusters), collapsed.roots,
                       graph, orientation, position, options.keeps_singularities);
   open_strips(lattice);
@@ -127,7 +129,9 @@ Extraction extract_from_mesh(const Graph& graph, const OrientationField& orienta
   Extraction result = collect_faces(lattice.map, repair, lattice.clusters, vertex, context);
   // Quads that are still to be split may be pentagons.
   const std::size_t most_corners = position.posy == 6 ? 3 : options.only_quads ? 4 : 5;
-  if (!options.manifold) join_pieces(result, collapsed.meetings, vertex, most_corners, context);
+  if (!options.manifold && !collapsed.meetings.empty()) {
+    join_pieces(result, collapsed.meetings, vertex, same_line, most_corners, context);
+  }
   return result;
 }
 

@@ -1,13 +1,16 @@
 #include "extract/join_pieces.h"
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <map>
 #include <utility>
 
 #include "extract/close_cracks.h"
 #include "extract/drop_unused.h"
+#include "extract/rename_vertices.h"
 #include "mesh/vertex_faces.h"
+#include "util/edge_of.h"
 #include "util/sort_unique.h"
 #include "util/union_find.h"
 
@@ -82,7 +85,8 @@ class Joining {
 }  // namespace
 
 void join_pieces(Extraction& extraction, std::vector<CollapsedMesh::Meeting> meetings,
-                 std::span<const Index> vertex, std::size_t most_corners, const Context& context) {
+                 std::span<const Index> vertex, std::span<const Index> same_line,
+                 std::size_t most_corners, const Context& context) {
   if (meetings.empty()) return;
   std::ranges::stable_sort(meetings, std::greater(), &CollapsedMesh::Meeting::count);
   Joining joining(extraction.mesh, context);
@@ -91,11 +95,9 @@ void join_pieces(Extraction& extraction, std::vector<CollapsedMesh::Meeting> mee
     joining.join(vertex[a], vertex[b], along_edge);
   }
   UnionFind sets = std::move(joining).take();
-  for (Index& v : extraction.mesh.faces.corners()) v = sets.find(v);
-  for (LineEdge& edge : extraction.line_edges) {
-    edge = {sets.find(edge.a), sets.find(edge.b), edge.line};
-  }
-  for (Index& v : extraction.corners) v = sets.find(v);
+  std::vector<Index> becomes(extraction.mesh.positions.size());
+  for (Index v = 0; v < becomes.size(); ++v) becomes[v] = sets.find(v);
+  rename_vertices(extraction, becomes);
   std::vector<std::uint8_t> on_cut(extraction.mesh.positions.size(), 0);
   for (const auto& [a, b, count, along_edge] : meetings) {
     if (!along_edge) continue;
@@ -103,8 +105,36 @@ void join_pieces(Extraction& extraction, std::vector<CollapsedMesh::Meeting> mee
       if (vertex[cluster] != no_index) on_cut[sets.find(vertex[cluster])] = 1;
     }
   }
-  if (std::ranges::count(on_cut, 1) > 0) close_cracks(extraction, on_cut, most_corners, context);
+  if (std::ranges::count(on_cut, 1) > 0) {
+    close_cracks(extraction, on_cut, same_line, most_corners, context);
+  }
   drop_unused(extraction);
+}
+
+std::vector<Index> lines_before_cut(const FeatureLines& lines, std::span<const Index> sources) {
+  UnionFind sets(lines.size());
+  std::map<std::array<Index, 2>, Index> line_of;  // edges as they were
+  for (Index line = 0; line < lines.size() && !sources.empty(); ++line) {
+    for (Index k = lines.begin(line); k + 1 < lines.end(line); ++k) {
+      const auto edge = edge_of(sources[lines.vertices[k]], sources[lines.vertices[k + 1]]);
+      sets.unite(line, line_of.try_emplace(edge, line).first->second);
+    }
+  }
+  std::vector<Index> result(lines.size());
+  for (Index line = 0; line < lines.size(); ++line) result[line] = sets.find(line);
+  return result;
+}
+
+std::vector<std::uint8_t> lines_of_cut(std::span<const Index> same_line) {
+  std::vector<std::uint8_t> result(same_line.size(), 0);
+  bool any = false;
+  for (Index line = 0; line < same_line.size(); ++line) {
+    if (same_line[line] == line) continue;
+    result[line] = result[same_line[line]] = 1;
+    any = true;
+  }
+  if (!any) result.clear();
+  return result;
 }
 
 }  // namespace meshgrain

@@ -19,6 +19,9 @@ struct JumpMap {
   std::vector<Jump> jumps;          // of each edge, in the frame of its even halfedge's origin
   std::vector<Index> lines;         // the feature line that each edge is part of, or no_index
   std::vector<std::uint8_t> hold;   // of each vertex: Hold
+  // Of each line, whether its jumps stay as they are, so that it gets the same vertices on all
+  // sides of a cut. Empty: none do.
+  std::vector<std::uint8_t> line_stays;
 
   Jump jump(Index h) const {
     const Jump& stored = jumps[h / 2];
@@ -42,6 +45,9 @@ struct JumpMap {
   }
 
   bool on_feature(Index h) const { return lines[h / 2] != no_index; }
+  bool is_kept(Index h) const {
+    return !line_stays.empty() && on_feature(h) && line_stays[lines[h / 2]] != 0;
+  }
 
   /// Whether h may be contracted, its target vanishing, as far as features are concerned: corners
   /// stay, lines shrink only along themselves, and no two edges of lines become one.

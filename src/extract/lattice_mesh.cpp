@@ -189,15 +189,14 @@ void LatticeMesh::insert(Index h, const std::array<int, 2>& t, const Jump& to_ap
   set_jump(spoke + 4, to_apex);
 }
 
-bool LatticeMesh::shift_leaves_axis(Index vertex, const std::array<int, 2>& t) const {
-  bool leaves = false;
+bool LatticeMesh::shift_spoils_lines(Index vertex, const std::array<int, 2>& t) const {
+  bool any = false;
   for_each_leaving(vertex, [&](Index g) {
     const auto own = jump(g).t;
     // Along an axis is the same from both ends.
-    leaves = leaves || (on_feature(g) && is_along_axis(own, posy) &&
-                        !is_along_axis({own[0] - t[0], own[1] - t[1]}, posy));
+    any = any || spoils_line(g, {own[0] - t[0], own[1] - t[1]});
   });
-  return leaves;
+  return any;
 }
 
 void LatticeMesh::shift(Index vertex, const std::array<int, 2>& t) {

@@ -70,13 +70,16 @@ class LatticeMesh : public JumpMap {
   /// there to the corner opposite of h.
   void insert(Index h, const std::array<int, 2>& t, const Jump& to_apex);
 
-  /// Whether a jump of h would leave a feature line that runs along an axis of the lattice.
-  bool leaves_axis(Index h, const std::array<int, 2>& t) const {
-    return on_feature(h) && is_along_axis(jumps[h / 2].t, posy) && !is_along_axis(t, posy);
+  /// Whether a jump of h would leave a feature line that runs along an axis of the lattice, or
+  /// change one that stays.
+  bool spoils_line(Index h, const std::array<int, 2>& t) const {
+    if (!on_feature(h)) return false;
+    if (is_kept(h)) return t != jump(h).t;
+    return is_along_axis(jumps[h / 2].t, posy) && !is_along_axis(t, posy);
   }
 
-  /// Whether shift() would make a line leave its axis.
-  bool shift_leaves_axis(Index vertex, const std::array<int, 2>& t) const;
+  /// Whether shift() would do that to a line.
+  bool shift_spoils_lines(Index vertex, const std::array<int, 2>& t) const;
   /// Moves a vertex by a lattice vector: only the numbers change.
   void shift(Index vertex, const std::array<int, 2>& t);
 

@@ -252,7 +252,7 @@ class LatticeRepair {
       const Jump back = after[1].lattice.around[0];
       const double gain = flaws(before) - flaws(after) + lattice_.squared_length(h) -
                           lattice_.metric().squared_length(back.t);
-      if (lattice_.leaves_axis(h, back.t)) continue;
+      if (lattice_.spoils_line(h, back.t)) continue;
       if (gain < least_gain || !pieces_.keep_angles(before, after)) continue;
       lattice_.set_jump(t, back);
       touch(pieces_.corners(h));
@@ -340,7 +340,7 @@ class LatticeRepair {
       constexpr int reach = 2;
       for (int x = -reach; x <= reach; ++x) {
         for (int y = -reach; y <= reach; ++y) {
-          if (lattice_.shift_leaves_axis(v, {x, y})) continue;
+          if (lattice_.shift_spoils_lines(v, {x, y})) continue;
           lattice_.shift(v, {x, y});
           star(v, after_);
           const double left = flaws(after_);

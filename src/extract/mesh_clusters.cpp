@@ -91,7 +91,8 @@ class Collapse {
     }
   }
 
-  CollapsedMesh result(const Mesh& surface, const Context& context) &&;
+  CollapsedMesh result(const Mesh& surface, std::span<const Index> sources,
+                       const Context& context) &&;
 
  private:
   /// The map of the surface with each disk as one vertex, in the frame of its root. Returns the
@@ -256,21 +257,19 @@ class Collapse {
   LinkCondition link_;
 };
 
-/// Whether each vertex of a surface is on an edge at which it is cut.
-std::vector<std::uint8_t> on_cut_edges(const Mesh& surface, const Context& context) {
-  auto border = border_edges(surface, context);
-  for (auto& [a, b] : border) std::tie(a, b) = std::minmax({a, b});
-  std::sort(border.begin(), border.end());
-  std::vector<std::uint8_t> result(surface.positions.size(), 0);
-  for (const auto& ends : rim_edges(surface, context)) {
-    if (std::binary_search(border.begin(), border.end(), ends)) continue;
-    for (const Index v : ends) result[v] = 1;
+/// Whether each vertex of a surface is on an edge at which it is cut, or was before.
+std::vector<std::uint8_t> on_cut_edges(const Mesh& surface, std::span<const Index> sources,
+                                       const Context& context) {
+  auto result = mark_ends(branch_edges(surface, context), surface.positions.size());
+  for (std::size_t v = 0; v < sources.size(); ++v) {
+    if (sources[v] != v) result[sources[v]] = 1;
   }
   return result;
 }
 
-/// Members of different clusters that are one vertex of the surface.
+/// Members of different clusters that are one vertex of the surface, or were (`before`, if any).
 std::vector<CollapsedMesh::Meeting> find_meetings(const Mesh& surface,
+                                                  std::span<const Index> before,
                                                   std::span<const Index> sources,
                                                   std::span<const Index> cluster,
                                                   const Context& context) {
@@ -284,20 +283,21 @@ std::vector<CollapsedMesh::Meeting> find_meetings(const Mesh& surface,
   const auto meet = [&](Index one, Index other) {
     if (cluster[one] == cluster[other]) return;
     const auto [a, b] = std::minmax({cluster[one], cluster[other]});
-    pairs.push_back({a, b, sources[one]});
+    pairs.push_back({a, b, before.empty() ? sources[one] : before[sources[one]]});
   };
   for (Index m = 0; m < sources.size(); ++m) {
-    const Index source = sources[m], before = std::exchange(last[source], m);
-    if (before == no_index) {
+    const Index source = before.empty() ? sources[m] : before[sources[m]];
+    const Index previous = std::exchange(last[source], m);
+    if (previous == no_index) {
       first[source] = m;
       continue;
     }
     meet(m, first[source]);
-    if (before != first[source]) meet(m, before);
+    if (previous != first[source]) meet(m, previous);
   }
   if (pairs.empty()) return {};
   std::sort(pairs.begin(), pairs.end());
-  const std::vector<std::uint8_t> on_edge = on_cut_edges(surface, context);
+  const std::vector<std::uint8_t> on_edge = on_cut_edges(surface, before, context);
   std::vector<CollapsedMesh::Meeting> meetings;
   for (const auto& [a, b, source] : pairs) {
     if (meetings.empty() || meetings.back().a != a || meetings.back().b != b) {
@@ -309,7 +309,8 @@ std::vector<CollapsedMesh::Meeting> find_meetings(const Mesh& surface,
   return meetings;
 }
 
-CollapsedMesh Collapse::result(const Mesh& surface, const Context& context) && {
+CollapsedMesh Collapse::result(const Mesh& surface, std::span<const Index> sources,
+                               const Context& context) && {
   const auto vertices = static_cast<Index>(map_.vertices());
   const PolygonMap::Renumbering rank = map_.compact();
   std::vector<Index> cluster(vertices), cluster_of_root(graph_.size(), no_index);
@@ -340,7 +341,7 @@ CollapsedMesh Collapse::result(const Mesh& surface, const Context& context) && {
   jumps_.resize(map_.halfedges() / 2);
   jumps_.shrink_to_fit();
   lattice_.lines.resize(jumps_.size());
-  auto meetings = find_meetings(surface, sources_, cluster, context);
+  auto meetings = find_meetings(surface, sources, sources_, cluster, context);
   // The members of disks, besides their roots.
   std::vector<Index> members = std::move(sources_);
   for (Index i = 0; i < graph_.size(); ++i) {
@@ -355,12 +356,13 @@ CollapsedMesh Collapse::result(const Mesh& surface, const Context& context) && {
 
 }  // namespace
 
-CollapsedMesh collapse_mesh(const Mesh& surface, const FeatureLines& features, const Graph& graph,
+CollapsedMesh collapse_mesh(const Mesh& surface, std::span<const Index> sources,
+                            const FeatureLines& features, const Graph& graph,
                             const OrientationField& orientation, const PositionField& position,
                             PositionEnergy energy, const Context& context) {
   Collapse collapse(surface, features, graph, orientation, position, energy, context);
   collapse.run(context);
-  return std::move(collapse).result(surface, context);
+  return std::move(collapse).result(surface, sources, context);
 }
 
 }  // namespace meshgrain

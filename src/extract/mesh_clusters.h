@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "extract/clusters.h"
 #include "extract/jump_map.h"
 #include "meshgrain/features.h"
@@ -24,8 +26,10 @@ struct CollapsedMesh {
 /// condition holds (Dey et al. 1999): the result has the components, borders and genus of the
 /// input, whatever the fields are. What is not manifold is cut first. Lines of features collapse
 /// only along themselves, so that each stays a chain of edges. `surface` is the triangle mesh whose
-/// vertices are the graph's nodes.
-CollapsedMesh collapse_mesh(const Mesh& surface, const FeatureLines& features, const Graph& graph,
+/// vertices are the graph's nodes, `sources` what these were before it was cut
+/// (ExtractOptions::sources).
+CollapsedMesh collapse_mesh(const Mesh& surface, std::span<const Index> sources,
+                            const FeatureLines& features, const Graph& graph,
                             const OrientationField& orientation, const PositionField& position,
                             PositionEnergy energy, const Context& context);
 

@@ -15,7 +15,8 @@ QuadStrips::QuadStrips(const Extraction& extraction)
       opposite_(mesh_.faces.corners().size(), no_index),
       hold_(held_vertices(extraction)),
       valence_(mesh_.positions.size(), 0),
-      on_border_(mesh_.positions.size(), 0) {
+      on_border_(mesh_.positions.size(), 0),
+      on_branch_(mesh_.positions.size(), 0) {
   find_opposites();
   for (const Index corner : edges_) {
     for (const Index v : ends(corner)) {
@@ -43,7 +44,9 @@ void QuadStrips::find_opposites() {
     for (auto it = begin; it != end;) {
       const auto next = std::find_if(it, end, [&](Index c) { return ends(c) != ends(*it); });
       edges_.push_back(*it);
-      if (next - it > 2) is_manifold_ = false;
+      if (next - it > 2) {
+        for (const Index w : ends(*it)) on_branch_[w] = 1;
+      }
       if (next - it > 1) {
         opposite_[it[0]] = it[1];
         opposite_[it[1]] = it[0];
@@ -98,7 +101,11 @@ std::vector<QuadStrip> QuadStrips::up_to(std::size_t most) const {
       seen[rung] = 1;
       if (!is_border(rung)) seen[opposite_[rung]] = 1;
     }
-    if (strip.faces.size() <= most) strips.push_back(std::move(strip));
+    const bool branches = std::ranges::any_of(strip.rungs, [&](Index rung) {
+      const auto [a, b] = ends(rung);
+      return on_branch_[a] && on_branch_[b];
+    });
+    if (strip.faces.size() <= most && !branches) strips.push_back(std::move(strip));
   }
   std::ranges::stable_sort(strips, {}, &QuadStrip::width);
   return strips;

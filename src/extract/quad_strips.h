@@ -26,10 +26,8 @@ class QuadStrips {
   /// The extraction must outlive this.
   explicit QuadStrips(const Extraction& extraction);
 
-  /// Whether no edge has more than two faces: else strips are not what they should be.
-  bool is_manifold() const { return is_manifold_; }
-
-  /// All of at most so many faces, the narrowest first.
+  /// All of at most so many faces, the narrowest first, but for those that pass through an edge of
+  /// more than two faces.
   std::vector<QuadStrip> up_to(std::size_t most) const;
 
   Edge ends(Index corner) const;
@@ -37,6 +35,8 @@ class QuadStrips {
   bool on_line(const Edge& edge) const;
 
   bool is_border_vertex(Index v) const { return on_border_[v]; }
+  /// Whether an edge of more than two faces ends there.
+  bool is_branch_vertex(Index v) const { return on_branch_[v]; }
   /// How a vertex is held (Hold) by lines: the border is one even where no feature says so.
   std::uint8_t hold(Index v) const { return hold_[v]; }
   std::size_t valence(Index v) const { return valence_[v]; }
@@ -46,13 +46,12 @@ class QuadStrips {
   QuadStrip follow(Index start) const;
 
   const Mesh& mesh_;
-  bool is_manifold_ = true;
   std::vector<Index> edges_;      // one corner of each, by its lower end, then by its higher one
   std::vector<Index> opposite_;   // of each corner: where the same edge starts in the other face
   std::vector<Edge> line_edges_;  // sorted
   std::vector<std::uint8_t> hold_;
   std::vector<std::size_t> valence_;
-  std::vector<std::uint8_t> on_border_;
+  std::vector<std::uint8_t> on_border_, on_branch_;
 };
 
 }  // namespace meshgrain

@@ -36,8 +36,9 @@ class Removal {
       const Edge rung = strips_.ends(corner);
       const auto [a, b] = stays_and_goes(strips_, rung);
       vertices.insert(vertices.end(), {a, b});
-      // Two lines must not meet, nor a corner go.
+      // Two lines must not meet, nor a corner go; nor anything where pieces meet.
       if (strips_.hold(b) == at_corner) return false;
+      if (strips_.is_branch_vertex(a) || strips_.is_branch_vertex(b)) return false;
       const bool is_border = strips_.is_border(corner);
       const bool along_line = strips_.on_line(rung) || is_border;
       const bool a_is_held = strips_.hold(a) != free_vertex;
@@ -153,7 +154,6 @@ std::size_t remove_strips(Extraction& extraction, std::size_t least, std::size_t
   while (done < least) {
     context.check();
     const QuadStrips strips(extraction);
-    if (!strips.is_manifold()) break;
     const Removal removal(extraction.mesh, strips, context);
     const std::vector<QuadStrip> candidates = strips.up_to(most - done);
     const auto best = std::ranges::find_if(

@@ -120,7 +120,7 @@ bool UnitCarrier::may_leave(const State& out) const {
   const Index h = halfedge(out);
   if (!lattice_.on_feature(h)) return true;
   const Jump after = left(out);
-  return !after.is_zero() && !lattice_.leaves_axis(h, after.t);
+  return !after.is_zero() && !lattice_.spoils_line(h, after.t);
 }
 
 /// `excess` gains in length, squared, what it loses of a unit.

@@ -8,6 +8,7 @@
 #include "features/mechanical_creases.h"
 #include "mesh/border.h"
 #include "mesh/marks.h"
+#include "util/sort_unique.h"
 
 namespace meshgrain {
 namespace {
@@ -60,10 +61,18 @@ Edges find_creases(const Mesh& mesh, const FeatureOptions& options, const Contex
 }
 
 std::vector<EdgeOfLine> feature_edges(const Mesh& mesh, const FeatureOptions& options,
-                                      double edge_length, const Context& context) {
-  const auto [rim, creases] = rim_and_creases(mesh, options, context);
+                                      double edge_length, const Context& context,
+                                      std::span<const std::array<Index, 2>> cuts) {
+  auto [rim, creases] = rim_and_creases(mesh, options, context);
+  if (!cuts.empty()) {
+    rim.insert(rim.end(), cuts.begin(), cuts.end());
+    sort_unique(rim);
+    std::erase_if(creases,
+                  [&](const auto& edge) { return std::ranges::binary_search(cuts, edge); });
+  }
   Edges marked;
   if (options.creases != Creases::none) marked = inner_marks(mesh, context);
+  std::erase_if(marked, [&](const auto& edge) { return std::ranges::binary_search(cuts, edge); });
   const LineKind kind = options.marks_may_go ? LineKind::crease : LineKind::marked;
   std::vector<EdgeOfLine> edges;
   for (const auto& ends : rim) edges.push_back({ends, LineKind::border});
@@ -76,8 +85,9 @@ std::vector<EdgeOfLine> feature_edges(const Mesh& mesh, const FeatureOptions& op
 }
 
 FeatureLines find_features(const Mesh& mesh, const FeatureOptions& options,
-                           const GuideLines& guides, double edge_length, const Context& context) {
-  std::vector<EdgeOfLine> edges = feature_edges(mesh, options, edge_length, context);
+                           const GuideLines& guides, std::span<const std::array<Index, 2>> cuts,
+                           double edge_length, const Context& context) {
+  std::vector<EdgeOfLine> edges = feature_edges(mesh, options, edge_length, context, cuts);
   std::vector<std::array<Index, 2>> others;
   for (const EdgeOfLine& edge : edges) others.push_back(edge.ends);
   std::sort(others.begin(), others.end());

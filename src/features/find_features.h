@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "features/cut_guides.h"
@@ -13,13 +14,15 @@ std::vector<std::array<Index, 2>> find_creases(const Mesh& triangles, const Feat
                                                const Context& context);
 
 /// The edges of the border and of the creases, each once, but for creases that faces with sides of
-/// `edge_length` could not follow.
+/// `edge_length` could not follow. `cuts`: more edges, sorted, that are lines as the border is.
 std::vector<EdgeOfLine> feature_edges(const Mesh& triangles, const FeatureOptions& options,
-                                      double edge_length, const Context& context);
+                                      double edge_length, const Context& context,
+                                      std::span<const std::array<Index, 2>> cuts = {});
 
-/// The public find_features() with guides that were cut into the mesh. Those that run along a
-/// border or a crease are part of that.
+/// The public find_features() with guides that were cut into the mesh, and the edges at which it
+/// was cut itself. Guides that run along a border or a crease are part of that.
 FeatureLines find_features(const Mesh& triangles, const FeatureOptions& options,
-                           const GuideLines& guides, double edge_length, const Context& context);
+                           const GuideLines& guides, std::span<const std::array<Index, 2>> cuts,
+                           double edge_length, const Context& context);
 
 }  // namespace meshgrain

@@ -75,8 +75,12 @@ class Placement {
   /// Lets v leave the line that holds it. Returns whether there was one.
   bool release(std::size_t v) { return rails_.release(v, extraction_.nodes[v]); }
 
-  /// The normal of the surface where vertex v is.
-  Vec3 normal(std::size_t v) const { return projector_.normal(extraction_.nodes[v]); }
+  /// The normal of the surface where vertex v is; zero where pieces of it meet, which have each
+  /// their own.
+  Vec3 normal(std::size_t v) const {
+    if (rails_.is_meeting(v)) return Vec3::Zero();
+    return projector_.normal(extraction_.nodes[v]);
+  }
 
   const Projector& projector() const { return projector_; }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "meshgrain/extract.h"
@@ -20,6 +21,9 @@ class Rails {
   bool is_free(std::size_t v) const { return segment_[v] == no_index; }
   /// Along a line.
   bool slides(std::size_t v) const { return !is_fixed(v) && !is_free(v); }
+
+  /// Whether pieces of a surface that is not manifold meet there.
+  bool is_meeting(std::size_t v) const { return !meets_.empty() && meets_[v] != 0; }
 
   /// The place on its line nearest to `p` that a vertex has; it remembers where that is.
   Vec3 project(const Vec3& p, std::size_t v);
@@ -47,6 +51,7 @@ class Rails {
   // For each vertex its place; `stays`, or no_index.
   std::vector<Index> segment_;
   std::vector<Index> line_;
+  std::vector<std::uint8_t> meets_;  // empty: nowhere
 };
 
 }  // namespace meshgrain

@@ -125,6 +125,16 @@ std::vector<std::array<Index, 2>> rim_edges(const Mesh& mesh, const Context& con
       context);
 }
 
+std::vector<std::array<Index, 2>> branch_edges(const Mesh& mesh, const Context& context) {
+  return select_edges<Edge>(
+      mesh,
+      [](Index a, Index b, const EdgeFaces& faces, Edges& out) {
+        const bool is_border = faces.forth + faces.back == 1;
+        if (!is_border && (faces.forth != 1 || faces.back != 1)) out.push_back({a, b});
+      },
+      context);
+}
+
 std::vector<InnerEdge> inner_edges(const Mesh& mesh,
                                    const std::function<bool(const InnerEdge&)>& wanted,
                                    const Context& context) {

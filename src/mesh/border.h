@@ -20,6 +20,10 @@ std::vector<std::array<Index, 2>> border_edges(const Mesh& mesh,
 /// more than two faces or sides that disagree meet. Each once, the smaller index first.
 std::vector<std::array<Index, 2>> rim_edges(const Mesh& mesh, const Context& context = Context(1));
 
+/// Those of them that are no border.
+std::vector<std::array<Index, 2>> branch_edges(const Mesh& mesh,
+                                               const Context& context = Context(1));
+
 /// Of each of so many vertices, whether one of the edges ends there.
 std::vector<std::uint8_t> mark_ends(std::span<const std::array<Index, 2>> edges,
                                     std::size_t vertices);

@@ -42,6 +42,7 @@ Pipeline::Pipeline(const Mesh& input, const RemeshOptions& options, const Contex
 void Pipeline::build_graph() {
   hierarchy_ = {};
   hierarchy_.levels.push_back(stage_("graph", [&] {
+    cut_surface();
     around_ = is_cloud_ ? VertexFaces() : vertex_faces(surface_, context_);
     return !is_cloud_ && nodes_are_vertices_
                ? vertex_graph(surface_, around_, options_.graph, context_)
@@ -49,6 +50,15 @@ void Pipeline::build_graph() {
   }));
   result_.report.nodes = graph().size();
   result_.report.edges = graph().neighbors.size() / 2;
+}
+
+void Pipeline::cut_surface() {
+  const bool may_cut = !is_cloud_ && nodes_are_vertices_ && !options_.lock_borders;
+  if (may_cut && guides_.edges.empty()) cuts_ = cut_apart(surface_, context_);
+}
+
+void Pipeline::join_cuts() {
+  join_again(surface_, std::exchange(cuts_, {}));
 }
 
 void Pipeline::build_levels() {
@@ -91,7 +101,8 @@ void Pipeline::find_lines() {
       if (options_.orientation_energy != OrientationEnergy::extrinsic) options.orient_creases = 1;
       // Triangles cannot follow two creases that meet at right angles.
       if (posy_of(options_.faces) == 6) options.align_creases = 0.3f;
-      features_ = find_features(surface_, options, guides_, target_.face_side(area_), context_);
+      features_ = find_features(surface_, options, guides_, cuts_.edges, target_.face_side(area_),
+                                context_);
     };
     find();
     if (may_leave_out_creases() && !has_marks() && lines_have_no_room()) {
@@ -166,8 +177,8 @@ bool Pipeline::choose_lattice() {
   constexpr double few_holes = 0.1;
   const bool any = has_thin_limbs_ || (has_few_faces() && share_of_holes() > few_holes);
   if (!any && !many_abreast({})) return false;  // nor are there without the borders
+  if (has_branches()) return false;
   const auto border = border_edges(surface_, context_);
-  if (has_branches(border.size())) return false;
   if (!any && !many_abreast(mark_ends(border, surface_.positions.size()))) return false;
   aim_at(OutputFaces::quad_dominant);
   return true;
@@ -183,17 +194,18 @@ void Pipeline::refine_for_details() {
 }
 
 void Pipeline::refine_for_lattice() {
+  join_cuts();
   const bool any_split = stage_(
       "subdivide", [&] { return split_long_edges(area_, edge_lengths(surface_, context_)); });
-  if (!any_split) return;
+  if (!any_split) return cut_surface();
   stage_("order", [&] { put_in_order(); });
   build_graph();
   find_lines();
   build_levels();
 }
 
-bool Pipeline::has_branches(std::size_t border_edges) const {
-  return rim_edges(surface_, context_).size() != border_edges;
+bool Pipeline::has_branches() const {
+  return !cuts_.empty() || !branch_edges(surface_, context_).empty();
 }
 
 void Pipeline::size_faces() {
@@ -261,7 +273,11 @@ void Pipeline::refine_for_sizes() {
   if (is_cloud_ || splits_only_once(options_) || lengths_.uniform()) return;
   const double share = target_.longest_edge();
   std::vector<float> longest = scaled(lengths_, share).values;
-  if (!stage_("subdivide", [&] { return subdivide(surface_, longest, context_); })) return;
+  join_cuts();
+  longest.resize(surface_.positions.size());
+  if (!stage_("subdivide", [&] { return subdivide(surface_, longest, context_); })) {
+    return cut_surface();
+  }
   stage_("order", [&] {
     const std::vector<Index> order = put_in_order();
     lengths_.values.resize(order.size());
@@ -269,6 +285,9 @@ void Pipeline::refine_for_sizes() {
     lengths_ = scaled(lengths_, 1 / share);
   });
   build_graph();
+  for (std::size_t v = lengths_.values.size(); v < cuts_.sources.size(); ++v) {
+    lengths_.values.push_back(lengths_[cuts_.sources[v]]);
+  }
   find_lines();
   build_levels();
   if (!borders_.empty()) return size_faces();

@@ -12,6 +12,7 @@
 #include "features/find_features.h"
 #include "features/guide_constraints.h"
 #include "finish/box_cells.h"
+#include "mesh/cut_apart.h"
 #include "mesh/frame.h"
 #include "mesh/surface_size.h"
 #include "mesh/vertex_faces.h"
@@ -187,7 +188,7 @@ class Pipeline {
   /// Among more faces holes and ends are little to see, for twice the time and the memory.
   bool has_few_faces() const;
   /// Edges between more than two faces: all of these would have to get the same new vertices.
-  bool has_branches(std::size_t border_edges) const;
+  bool has_branches() const;
   /// Returns whether the lattice is finer now.
   bool choose_lattice();
   /// The surface, for the lattice that was chosen.
@@ -228,6 +229,9 @@ class Pipeline {
 
   /// Those that stay.
   void find_borders();
+  /// Where it is not manifold, once nothing is split any more; and undoes that.
+  void cut_surface();
+  void join_cuts();
   /// Guides onto the surface: those that edges must follow are cut into it.
   void lay_guides(double edge_length);
   void append(const FeatureConstraints& more);
@@ -288,6 +292,7 @@ class Pipeline {
   bool is_seamed_ = false;     // much of its border
   Mesh surface_;
   std::optional<BoxCells> crossings_of_surface_;  // once that is asked for
+  Cuts cuts_;                                     // of the surface, while it has a graph
   VertexFaces around_;                            // its vertices, once it has a graph
   SurfaceSize input_size_{};                      // of the surface before it is refined
   Hierarchy hierarchy_;

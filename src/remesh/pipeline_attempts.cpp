@@ -222,8 +222,7 @@ bool Pipeline::mend_flaws() {
   // A finer lattice costs half as many irregular vertices again.
   const bool is_coarse = lattice_faces_ == OutputFaces::quads;
   const bool has_lost = !keeps_singularities_.empty();  // or had
-  if (!left.any() || !has_lost || !is_coarse || !may_have_fine_lattice() ||
-      has_branches(border_edges(surface_, context_).size())) {
+  if (!left.any() || !has_lost || !is_coarse || !may_have_fine_lattice() || has_branches()) {
     may_have_faults_ = try_other_starts(left).faults > 0;
     return false;
   }

@@ -9,6 +9,7 @@
 #include "extract/add_strips.h"
 #include "extract/remove_strips.h"
 #include "extract/single_faces.h"
+#include "features/cut_samples.h"
 #include "field/transfer.h"
 #include "finish/face_shape.h"
 #include "finish/smooth.h"
@@ -182,8 +183,11 @@ PositionField Pipeline::solve_positions() {
   position.seed += other_start_;
   position.posy = posy_of(options_.faces);
   position.energy = options_.position_energy;
+  std::vector<PositionConstraint> constraints = constraints_.position;
+  const auto at_cuts = sample_cuts(cuts_, surface_, features_, lengths_);
+  constraints.insert(constraints.end(), at_cuts.begin(), at_cuts.end());
   const auto solver = PositionSolver::create(hierarchy_, fields().orientation, lengths_, position,
-                                             constraints_.position, context_);
+                                             constraints, context_);
   while (solver->step(context_)) context_.progress("position field", solver->progress());
   result_.report.position_energies = solver->energies();
   return solver->field();
@@ -212,6 +216,7 @@ Extraction Pipeline::extract(const PositionField& positions) {
   } else if (nodes_are_vertices_) {
     extract.surface = &surface_;
     extract.features = &features_;
+    extract.sources = cuts_.sources;
     extract.only_quads = has_quads_alone();
     extract.keeps_singularities = keeps_singularities_;
     extract.manifold = options_.manifold || !borders_.empty();  // see finish_borders()
