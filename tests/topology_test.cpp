@@ -143,6 +143,9 @@ void expect_to_meet(const Mesh& input, std::span<const std::size_t> counts) {
         EXPECT_GE(after.non_manifold_edges, 3u);
         EXPECT_EQ(after.inverted_quads, 0u);
         EXPECT_TRUE(find_crossings(result.mesh, Context()).empty());
+        // All faces lie on their own piece, up to its ends.
+        EXPECT_LT(surface_distance(input, result.mesh, 1, 20000).max, 0.03);
+        EXPECT_LT(surface_distance(result.mesh, input, 1, 20000).max, 0.03);
         const auto wanted = static_cast<double>(count);
         EXPECT_NEAR(static_cast<double>(after.faces), wanted, 0.0101 * wanted);
       }
@@ -169,17 +172,38 @@ TEST(Topology, AMembraneMeetsItsTube) {
   expect_to_meet(made::tube_with_membrane(), std::array<std::size_t, 1>{1000});
 }
 
-/// The pieces that `--manifold` leaves apart are whole.
+/// Where the surface is far finer than the faces, as where it is for more of them as well.
+TEST(Topology, PiecesMeetAtAllLevels) {
+  for (const Mesh& input :
+       {made::tube_with_membrane(), made::surface_of_cells({{0, 0, 0}, {1, 1, 0}})}) {
+    for (const OutputFaces faces : {OutputFaces::quads, OutputFaces::triangles}) {
+      RemeshOptions options;
+      options.faces = faces;
+      for (const RemeshResult& level :
+           remesh_levels(input, std::array<std::size_t, 2>{300, 3000}, options)) {
+        const MeshStatistics after = mesh_statistics(level.mesh);
+        EXPECT_EQ(after.boundary_loops, mesh_statistics(input).boundary_loops);
+        EXPECT_GE(after.non_manifold_edges, 3u);
+        EXPECT_TRUE(find_crossings(level.mesh, Context()).empty());
+      }
+    }
+  }
+}
+
+/// The pieces that `--manifold` leaves apart are whole; hexagons always leave them apart.
 TEST(Topology, CubesThatAreLeftApartAreClosed) {
-  RemeshOptions options;
-  options.face_count = 1000;
-  options.manifold = true;
   const Mesh cubes = made::surface_of_cells({{0, 0, 0}, {1, 1, 0}});
-  const MeshStatistics after = mesh_statistics(remesh(cubes, options).mesh);
-  EXPECT_EQ(after.components, 2u);
-  EXPECT_EQ(after.euler, 4);
-  EXPECT_EQ(after.boundary_loops, 0u);
-  EXPECT_EQ(after.non_manifold_edges, 0u);
+  for (const OutputFaces faces : {OutputFaces::quads, OutputFaces::hexagons}) {
+    RemeshOptions options;
+    options.face_count = 1000;
+    options.faces = faces;
+    options.manifold = faces == OutputFaces::quads;
+    const MeshStatistics after = mesh_statistics(remesh(cubes, options).mesh);
+    EXPECT_EQ(after.components, 2u);
+    EXPECT_EQ(after.euler, 4);
+    EXPECT_EQ(after.boundary_loops, 0u);
+    EXPECT_EQ(after.non_manifold_edges, 0u);
+  }
 }
 
 /// A comb, whose teeth are hardly wider than what hexagons leave out along the border.

@@ -23,7 +23,10 @@ void cut(Extraction& extraction, const QuadStrips& strips, const QuadStrip& stri
   std::map<QuadStrips::Edge, Index> middles;  // of the rungs
   for (const Index corner : strip.rungs) {
     const QuadStrips::Edge ends = strips.ends(corner);
-    middles[ends] = append_mean(extraction, ends);
+    const auto [a, b] = ends;
+    // Where pieces meet, the place on the input may be on the other one.
+    const bool turn = strips.is_branch_vertex(a);
+    middles[ends] = append_mean(extraction, QuadStrips::Edge{turn ? b : a, turn ? a : b});
   }
   for (const Index f : strip.faces) {
     std::array<Index, 4> face;

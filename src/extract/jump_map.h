@@ -50,10 +50,12 @@ struct JumpMap {
   }
 
   /// Whether h may be contracted, its target vanishing, as far as features are concerned: corners
-  /// stay, lines shrink only along themselves, and no two edges of lines become one.
+  /// stay, lines shrink only along themselves, those that stay only where nothing is lost, and no
+  /// two edges of lines become one.
   bool keeps_features(Index h) const {
     if (hold[map.target(h)] == free_vertex) return true;
     if (hold[map.target(h)] == at_corner || !on_feature(h)) return false;
+    if (is_kept(h) && !jump(h).is_zero()) return false;
     const auto is_between_lines = [&](Index side) {
       return !holes[side] && on_feature(map.next(side)) && on_feature(map.prev(side));
     };

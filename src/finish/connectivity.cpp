@@ -1,7 +1,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cstdint>
 #include <map>
 #include <numeric>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -69,6 +71,17 @@ void follow_copies(Extraction& extraction, const std::vector<Index>& source) {
   }
 }
 
+/// Whether each vertex is one where pieces of the surface meet: its place on the input is on one of
+/// them, and says nothing about the others.
+std::vector<std::uint8_t> meeting_vertices(const std::vector<CornerEdge>& edges,
+                                           std::size_t vertices) {
+  std::vector<std::uint8_t> result(vertices, 0);
+  for (std::size_t e = 2; e < edges.size(); ++e) {
+    if (edges[e].key() == edges[e - 2].key()) result[edges[e].low] = result[edges[e].high] = 1;
+  }
+  return result;
+}
+
 }  // namespace
 
 void split_into_quads(Extraction& extraction) {
@@ -76,11 +89,17 @@ void split_into_quads(Extraction& extraction) {
   const Faces faces = std::move(mesh.faces);
   std::vector<Index> middle(faces.corners().size());  // of the edge that starts at each corner
   const auto edges = corner_edges(faces);
+  const auto meets = meeting_vertices(edges, mesh.positions.size());
+  const auto one_piece_first = [&](std::span<Index> some) {
+    const auto first = std::ranges::find_if(some, [&](Index v) { return !meets[v]; });
+    if (first != some.end()) std::ranges::rotate(some, first);
+  };
   for (std::size_t e = 0; e < edges.size(); ++e) {
     if (e > 0 && edges[e].key() == edges[e - 1].key()) {
       middle[edges[e].corner] = middle[edges[e - 1].corner];
     } else {
-      const Index ends[2] = {edges[e].low, edges[e].high};
+      Index ends[2] = {edges[e].low, edges[e].high};
+      one_piece_first(ends);
       middle[edges[e].corner] = append_mean(extraction, ends);
     }
   }
@@ -96,9 +115,12 @@ void split_into_quads(Extraction& extraction) {
   extraction.line_edges = std::move(halves);
   mesh.faces = Faces();
   mesh.faces.reserve(faces.corners().size(), 4 * faces.corners().size());
+  std::vector<Index> corners;
   for (std::size_t f = 0; f < faces.size(); ++f) {
     const auto face = faces[f];
-    const Index center = append_mean(extraction, face);
+    corners.assign(face.begin(), face.end());
+    one_piece_first(corners);
+    const Index center = append_mean(extraction, corners);
     const std::size_t first = faces.first(f), n = face.size();
     for (std::size_t k = 0; k < n; ++k) {
       mesh.faces.push_back({face[k], middle[first + k], center, middle[first + (k + n - 1) % n]});

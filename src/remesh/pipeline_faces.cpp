@@ -190,7 +190,11 @@ PositionField Pipeline::solve_positions() {
                                              constraints, context_);
   while (solver->step(context_)) context_.progress("position field", solver->progress());
   result_.report.position_energies = solver->energies();
-  return solver->field();
+  PositionField field = solver->field();
+  // Where these are farther apart than lattice points are, others than they may lie nearer to nodes
+  // half way between them.
+  for (const PositionConstraint& sample : at_cuts) field.points[sample.node] = sample.point;
+  return field;
 }
 
 double Pipeline::cancelling_cost(double regularity) const {
@@ -219,7 +223,9 @@ Extraction Pipeline::extract(const PositionField& positions) {
     extract.sources = cuts_.sources;
     extract.only_quads = has_quads_alone();
     extract.keeps_singularities = keeps_singularities_;
-    extract.manifold = options_.manifold || !borders_.empty();  // see finish_borders()
+    // See finish_borders(); and hexagons around a vertex of several pieces would be open.
+    extract.manifold = options_.manifold || !borders_.empty() ||
+                       (options_.faces == OutputFaces::hexagons && !cuts_.empty());
   } else {
     extract.border = border_of_faces(surface_, graph());
   }
