@@ -75,9 +75,13 @@ std::vector<Vec3> nearest_samples(const std::vector<Index>& chain, const Mesh& s
     const double length = (surface.positions[b] - surface.positions[a]).norm();
     at[k] = at[k - 1] + 2 * length / (double{lengths[a]} + double{lengths[b]});
   }
+  std::vector<Vec3> result;
+  if (!(at.back() > 0)) {
+    for (const Index v : chain) result.push_back(surface.positions[v]);
+    return result;
+  }
   const double least = chain.front() == chain.back() ? 3 : 1;
   const double count = std::max(least, std::round(at.back()));
-  std::vector<Vec3> result;
   std::size_t k = 1;
   for (const double place : at) {
     const double sample = std::round(place / at.back() * count) / count * at.back();
