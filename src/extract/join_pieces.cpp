@@ -27,7 +27,7 @@ class Joining {
     if (a == b) return;
     std::vector<Index> both = members(a);
     const std::vector<Index> others = members(b);
-    if (share_any(faces(both), faces(others))) return;
+    if (share_any(faces_of(around_, both), faces_of(around_, others))) return;
     if (!along_edge && share_any(neighbors(both), neighbors(others))) return;
     both.insert(both.end(), others.begin(), others.end());
     sets_.unite(a, b);
@@ -50,14 +50,6 @@ class Joining {
   std::vector<Index> members(Index root) const {
     const auto it = members_.find(root);
     return it == members_.end() ? std::vector<Index>{root} : it->second;
-  }
-
-  std::vector<Index> faces(const std::vector<Index>& vertices) const {
-    std::vector<Index> result;
-    for (const Index v : vertices)
-      result.insert(result.end(), around_[v].begin(), around_[v].end());
-    sort_unique(result);
-    return result;
   }
 
   /// The vertices that have an edge with one of some, by the sets that they are in.

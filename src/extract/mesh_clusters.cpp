@@ -280,13 +280,16 @@ std::vector<CollapsedMesh::Meeting> find_meetings(const Mesh& surface,
   // Each meets the first and the one before it: all others, where thousands are, would take long.
   std::vector<Index> first(surface.positions.size(), no_index), last = first;  // members
   std::vector<Pair> pairs;
+  const auto source_of = [&](Index member) {
+    return before.empty() ? sources[member] : before[sources[member]];
+  };
   const auto meet = [&](Index one, Index other) {
     if (cluster[one] == cluster[other]) return;
     const auto [a, b] = std::minmax({cluster[one], cluster[other]});
-    pairs.push_back({a, b, before.empty() ? sources[one] : before[sources[one]]});
+    pairs.push_back({a, b, source_of(one)});
   };
   for (Index m = 0; m < sources.size(); ++m) {
-    const Index source = before.empty() ? sources[m] : before[sources[m]];
+    const Index source = source_of(m);
     const Index previous = std::exchange(last[source], m);
     if (previous == no_index) {
       first[source] = m;

@@ -11,7 +11,6 @@
 #include "features/feature_edges.h"
 #include "mesh/vertex_faces.h"
 #include "util/edge_of.h"
-#include "util/sort_unique.h"
 
 namespace meshgrain {
 namespace {
@@ -79,10 +78,9 @@ class Removal {
       const auto it = becomes.find(v);
       return it == becomes.end() ? v : it->second;
     };
-    std::vector<Index> faces, gone = strip.faces;
+    const std::vector<Index> faces = faces_of(around_, vertices);
+    std::vector<Index> gone = strip.faces;
     std::ranges::sort(gone);
-    for (const Index v : vertices) faces.insert(faces.end(), around_[v].begin(), around_[v].end());
-    sort_unique(faces);
     std::map<Edge, int> uses;
     std::vector<Index> border;  // corners where its edges start
     bool any_stays = faces.size() < mesh_.faces.size();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <set>
 
 #include "util/edge_of.h"
 #include "util/sort_unique.h"
@@ -51,7 +52,7 @@ class CutLines {
   std::vector<Index> follow(Index start, Index next) {
     std::vector<Index> chain{start};
     for (Index last = start;;) {
-      used_[edge_of(last, next)] = true;
+      used_.insert(edge_of(last, next));
       chain.push_back(next);
       if (next == start || is_end(next)) return chain;
       const auto& around = neighbors_.at(next);
@@ -62,7 +63,7 @@ class CutLines {
   }
 
   std::map<Index, std::vector<Index>> neighbors_;
-  std::map<std::array<Index, 2>, bool> used_;
+  std::set<std::array<Index, 2>> used_;
   std::vector<Index> corners_;
 };
 

@@ -27,13 +27,11 @@ Rails::Rails(const Extraction& extraction, const FeatureLines& lines, const Cont
     for (const Index v : {a, b}) put_on_line(v, line, entry(v), extraction.mesh.positions[v]);
   }
   for (const Index v : extraction.corners) segment_[v] = stays;
-  const auto rim = rim_edges(extraction.mesh, context);
-  if (!rim.empty()) {
-    meets_ = mark_ends(branch_edges(extraction.mesh, context), extraction.mesh.positions.size());
-  }
   // The border of a mesh that was not made along lines.
-  for (const auto& [a, b] : rim) {
-    for (const Index v : {a, b}) {
+  for (const auto& [ends, is_border] : classified_rim(extraction.mesh, context)) {
+    if (!is_border) meets_.resize(extraction.mesh.positions.size(), 0);
+    for (const Index v : ends) {
+      if (!is_border) meets_[v] = 1;
       if (!is_free(v)) continue;
       const Index at = entry(v);
       if (at == no_index) {

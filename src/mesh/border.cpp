@@ -125,14 +125,22 @@ std::vector<std::array<Index, 2>> rim_edges(const Mesh& mesh, const Context& con
       context);
 }
 
-std::vector<std::array<Index, 2>> branch_edges(const Mesh& mesh, const Context& context) {
-  return select_edges<Edge>(
+std::vector<RimEdge> classified_rim(const Mesh& mesh, const Context& context) {
+  return select_edges<RimEdge>(
       mesh,
-      [](Index a, Index b, const EdgeFaces& faces, Edges& out) {
-        const bool is_border = faces.forth + faces.back == 1;
-        if (!is_border && (faces.forth != 1 || faces.back != 1)) out.push_back({a, b});
+      [](Index a, Index b, const EdgeFaces& faces, std::vector<RimEdge>& out) {
+        if (faces.forth == 1 && faces.back == 1) return;
+        out.push_back({{a, b}, faces.forth + faces.back == 1});
       },
       context);
+}
+
+std::vector<std::array<Index, 2>> branch_edges(const Mesh& mesh, const Context& context) {
+  Edges result;
+  for (const auto& [ends, is_border] : classified_rim(mesh, context)) {
+    if (!is_border) result.push_back(ends);
+  }
+  return result;
 }
 
 std::vector<InnerEdge> inner_edges(const Mesh& mesh,

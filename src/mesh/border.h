@@ -20,7 +20,14 @@ std::vector<std::array<Index, 2>> border_edges(const Mesh& mesh,
 /// more than two faces or sides that disagree meet. Each once, the smaller index first.
 std::vector<std::array<Index, 2>> rim_edges(const Mesh& mesh, const Context& context = Context(1));
 
-/// Those of them that are no border.
+/// The same, and whether each is of the border.
+struct RimEdge {
+  std::array<Index, 2> ends;
+  bool is_border;
+};
+std::vector<RimEdge> classified_rim(const Mesh& mesh, const Context& context = Context(1));
+
+/// Those that are not.
 std::vector<std::array<Index, 2>> branch_edges(const Mesh& mesh,
                                                const Context& context = Context(1));
 

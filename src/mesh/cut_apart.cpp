@@ -38,7 +38,7 @@ class Cutting {
     result.sources.resize(mesh_.positions.size());
     for (Index v = 0; v < result.sources.size(); ++v) result.sources[v] = v;
     for (const Index v : vertices) part_fans(v, result.sources);
-    const std::vector<Index> faces = faces_around(vertices);
+    const std::vector<Index> faces = faces_of(around_, vertices);
     drop_marks(faces);
     // Corners change last: what meets at an edge is told from the vertices that were.
     const std::vector<Edge> before = edges_of(faces);
@@ -110,14 +110,6 @@ class Cutting {
     append(mesh_.values);
     sources.push_back(v);
     return static_cast<Index>(sources.size() - 1);
-  }
-
-  std::vector<Index> faces_around(const std::vector<Index>& vertices) const {
-    std::vector<Index> result;
-    for (const Index v : vertices)
-      result.insert(result.end(), around_[v].begin(), around_[v].end());
-    sort_unique(result);
-    return result;
   }
 
   std::vector<Edge> edges_of(const std::vector<Index>& faces) const {

@@ -37,6 +37,13 @@ std::vector<Index> vertices_of(const Mesh& mesh, std::span<const Index> faces) {
   return result;
 }
 
+std::vector<Index> faces_of(const VertexFaces& around, std::span<const Index> vertices) {
+  std::vector<Index> result;
+  for (const Index v : vertices) result.insert(result.end(), around[v].begin(), around[v].end());
+  sort_unique(result);
+  return result;
+}
+
 std::vector<Index> with_rings(const Mesh& mesh, const VertexFaces& around, std::vector<Index> faces,
                               int rings) {
   sort_unique(faces);

@@ -35,6 +35,9 @@ bool share_any(std::span<const Index> a, std::span<const Index> b);
 /// The vertices of some faces, in increasing order.
 std::vector<Index> vertices_of(const Mesh& mesh, std::span<const Index> faces);
 
+/// The faces around some vertices, in increasing order.
+std::vector<Index> faces_of(const VertexFaces& around, std::span<const Index> vertices);
+
 /// Some faces with so many rings of others around them, in increasing order.
 std::vector<Index> with_rings(const Mesh& mesh, const VertexFaces& around, std::vector<Index> faces,
                               int rings);
