@@ -73,7 +73,7 @@ class Mending {
   static double steps_to_look_at(const BadPlace& place) {
     constexpr double large = 150;
     const auto faces = static_cast<double>(place.faces.size());
-    return faces * std::max(1.0, std::pow(faces / large, 2));
+    return faces * std::max(1.0, std::pow(faces / large, 2)) + static_cast<double>(place.crossings);
   }
 
   double effort() const {

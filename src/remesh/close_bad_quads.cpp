@@ -14,6 +14,7 @@
 #include "extract/extraction_map.h"
 #include "extract/face_repair.h"
 #include "extract/piece.h"
+#include "finish/crossings.h"
 #include "finish/face_shape.h"
 #include "finish/smooth.h"
 #include "remesh/change_piece.h"
@@ -53,7 +54,8 @@ class Closing {
     constexpr std::size_t hopeless = 5;  // one in so many
     if (bad == 0 || bad > count / hopeless) return;
     const auto gone = [&] { return count - whole_.mesh.faces.size(); };
-    tries_left_ = tries + count / faces_a_try;
+    is_crumpled_ = is_crumpled(find_crossings(whole_.mesh, context_).size(), count);
+    tries_left_ = worth(tries + count / faces_a_try);
     while (gone() < most && close_one(most - gone())) {
     }
     let_lines_go();
@@ -62,6 +64,11 @@ class Closing {
 
  private:
   using Corners = std::array<Index, 4>;
+
+  std::size_t worth(std::size_t all) const {
+    return is_crumpled_ ? static_cast<std::size_t>(effort_if_crumpled * static_cast<double>(all))
+                        : all;
+  }
 
   Corners corners(Index f) const {
     const auto face = std::as_const(whole_.mesh.faces)[f];
@@ -102,7 +109,7 @@ class Closing {
   void let_lines_go() {
     smoothing_.creases_stay = false;
     smoothing_.corners_stay = corners_stay_;
-    tries_left_ = tries;
+    tries_left_ = worth(tries);
     seen_.clear();
     while (let_go_at_one()) {
     }
@@ -238,6 +245,7 @@ class Closing {
   SmoothOptions smoothing_;
   const bool corners_stay_;  // in the end, too
   const Context& context_;
+  bool is_crumpled_ = false;
   std::size_t tries_left_ = 0;
   bool any_changed_ = false;
   std::set<Corners> seen_;
