@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "graph/nearest_neighbors.h"
+#include "cloud/nearest_neighbors.h"
 #include "made_points.h"
 
 namespace meshgrain {

@@ -1,4 +1,4 @@
-#include "graph/nearest_neighbors.h"
+#include "cloud/nearest_neighbors.h"
 
 #include <gtest/gtest.h>
 

@@ -24,7 +24,7 @@ std::vector<Vec3> vertex_normals(const Mesh& mesh, double crease_degrees = -1,
 /// One unit normal a point of a cloud (faces are ignored): that of the plane of least squares
 /// through the point and its `k` nearest neighbours, nearer ones weighing more. The normals agree
 /// over each connected part of the neighbour graph and point outwards for the part as a whole
-/// (after Hoppe et al. 1992; see src/graph/orient_normals.cpp). Parts without neighbours get any
+/// (after Hoppe et al. 1992; see src/cloud/orient_normals.cpp). Parts without neighbours get any
 /// unit vector.
 std::vector<Vec3> estimate_normals(const Mesh& cloud, std::size_t k = 16,
                                    const Context& context = Context());

@@ -50,8 +50,8 @@ struct RemeshOptions {
   /// other or limbs thin, so that these may be a single quad wide, where there are many holes,
   /// handles or pieces, or where ends would be missed; else every cell becomes four quads.
   bool fine_lattice = true;
-  /// Whether edges of large meshes that are far shorter than the target needs are collapsed first
-  /// (not with `fields`).
+  /// Whether edges of large meshes that are far shorter than the target needs are collapsed first,
+  /// and points of clouds that are far closer replaced by their means (not with `fields`).
   bool coarsen = true;
   /// Of meshes. One half is remeshed, without `fine_lattice`, and its mirror image added;
   /// RemeshResult::fields are those of the half. An input that is not symmetric within one percent

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "graph/nearest_neighbors.h"
+#include "cloud/nearest_neighbors.h"
 #include "mesh/edges.h"
 #include "mesh/frame.h"
 #include "meshgrain/error.h"

@@ -2,10 +2,10 @@
 
 #include <utility>
 
+#include "cloud/nearest_neighbors.h"
 #include "field/posy.h"
 #include "field/rosy.h"
 #include "field/with_symmetry.h"
-#include "graph/nearest_neighbors.h"
 #include "meshgrain/error.h"
 
 namespace meshgrain {

@@ -2,60 +2,22 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <limits>
 #include <utility>
 
-#include "graph/cloud_normals.h"
-#include "graph/nearest_neighbors.h"
+#include "cloud/cloud_graph.h"
+#include "cloud/nearest_neighbors.h"
+#include "graph/gather_neighbors.h"
 #include "graph/vertex_graph.h"
-#include "mesh/sort_by_vertex.h"
 #include "mesh/vertex_faces.h"
 #include "mesh/vertex_measures.h"
 #include "mesh/vertex_normals.h"
 #include "mesh/vertex_ring.h"
 #include "meshgrain/error.h"
-#include "util/collect.h"
 
 namespace meshgrain {
 namespace {
 
 constexpr std::size_t grain = 4096;
-
-/// Fills offsets and neighbours from `neighbors_of(i, out)`, which appends the neighbours of node i
-/// in increasing order.
-template <typename NeighborsOf>
-void gather_neighbors(Graph& graph, const NeighborsOf& neighbors_of, const Context& context) {
-  const std::size_t n = graph.size();
-  graph.offsets.assign(n + 1, 0);
-  std::vector<std::vector<Index>> gathered((n + grain - 1) / grain);
-  context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
-    auto& out = gathered[begin / grain];
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t start = out.size();
-      neighbors_of(static_cast<Index>(i), out);
-      graph.offsets[i + 1] = static_cast<Index>(out.size() - start);
-    }
-  });
-  // SIMD lanes count entries with a sign.
-  constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
-  std::size_t entries = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    entries += graph.offsets[i + 1];
-    if (entries > most) {
-      throw Error("too large: the points have more than 2147483647 neighbours in all");
-    }
-    graph.offsets[i + 1] = static_cast<Index>(entries);
-  }
-  graph.neighbors.resize(graph.offsets[n]);
-  context.for_ranges(n, grain, [&](std::size_t begin, std::size_t) {
-    auto& range = gathered[begin / grain];
-    std::ranges::copy(range, graph.neighbors.begin() + graph.offsets[begin]);
-    range = {};
-  });
-}
 
 void sort_unique_from(std::vector<Index>& values, std::size_t start) {
   const auto begin = values.begin() + static_cast<std::ptrdiff_t>(start);
@@ -132,74 +94,6 @@ Graph face_graph(const Mesh& mesh, const Context& context) {
   return graph;
 }
 
-Graph cloud_graph(const Mesh& cloud, const GraphOptions& options, const Context& context) {
-  if (cloud.positions.size() < 4) throw Error("a point cloud needs at least four points");
-  Graph graph;
-  graph.positions = cloud.positions;
-  graph.normals = cloud_normals(cloud, options.neighbors, context);
-  const std::size_t n = cloud.positions.size();
-  const Neighborhoods nearest = nearest_neighbors(cloud.positions, options.neighbors, context);
-
-  // Being among the nearest is not mutual, but the fields need every edge from both ends.
-  struct Edge {
-    Index from, to;
-  };
-  const auto find_one_sided = [&](std::size_t begin, std::size_t end, std::vector<Edge>& out) {
-    for (auto i = static_cast<Index>(begin); i < end; ++i) {
-      for (const Index j : nearest[i]) {
-        if (std::ranges::find(nearest[j], i) == nearest[j].end()) out.push_back({j, i});
-      }
-    }
-  };
-  const std::vector<Edge> one_sided = collect<Edge>(n, find_one_sided, context);
-  UninitializedVector<Index> others(one_sided.size());
-  const std::vector<Index> offsets = sort_by_vertex(
-      one_sided.size(), n, [&](std::size_t e) { return std::array{one_sided[e].from}; },
-      [&](std::size_t e, Index place) { others[place] = one_sided[e].to; }, context);
-  gather_neighbors(
-      graph,
-      [&](Index i, std::vector<Index>& out) {
-        const auto start = static_cast<std::ptrdiff_t>(out.size());
-        out.insert(out.end(), nearest[i].begin(), nearest[i].end());
-        out.insert(out.end(), others.begin() + offsets[i], others.begin() + offsets[i + 1]);
-        std::sort(out.begin() + start, out.end());
-      },
-      context);
-
-  // Of evenly scattered points, as many as there are a unit of area, the j-th nearest lies at a
-  // mean squared distance of j / (pi density): the k nearest together tell the area of one.
-  graph.areas.resize(n);
-  std::vector<float> scale(n, 0);  // mean squared distance to the neighbours
-  context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto neighbors = nearest[i];
-      float squares = 0;
-      for (const Index j : neighbors) {
-        squares += (graph.positions[j] - graph.positions[i]).squaredNorm();
-      }
-      const float count = static_cast<float>(neighbors.size());
-      const float mean = count > 0 ? squares / count : 0.0f;
-      graph.areas[i] = 3.14159265f * 2 * mean / (count + 1);
-      scale[i] = mean;
-    }
-  });
-  if (options.weights == GraphWeights::uniform) return graph;
-  graph.weights.resize(graph.neighbors.size());
-  context.for_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
-        // The heat kernel of Belkin et al. 2009, at the mean of both ends' scales: weights must be
-        // the same from either end, or there is no energy that the local steps lower.
-        const Index j = graph.neighbors[e];
-        const float d = (graph.positions[j] - graph.positions[i]).squaredNorm();
-        const float both = scale[i] + scale[j];
-        graph.weights[e] = both > 0 ? std::max(std::exp(-d / both), 0.01f) : 1.0f;
-      }
-    }
-  });
-  return graph;
-}
-
 }  // namespace
 
 Graph vertex_graph(const Mesh& mesh, const VertexFaces& around, const GraphOptions& options,
@@ -233,7 +127,11 @@ Graph vertex_graph(const Mesh& mesh, const VertexFaces& around, const GraphOptio
 }
 
 Graph build_graph(const Mesh& mesh, const GraphOptions& options, const Context& context) {
-  if (mesh.is_point_cloud()) return cloud_graph(mesh, options, context);
+  if (mesh.is_point_cloud()) {
+    Neighborhoods nearest = nearest_neighbors(mesh.positions, options.neighbors, context);
+    if (!mesh.normals.empty()) leave_out_other_sides(nearest, mesh.normals, context);
+    return cloud_graph(mesh, nearest, options, context);
+  }
   require_triangles(mesh);
   return options.nodes == GraphNodes::faces
              ? face_graph(mesh, context)

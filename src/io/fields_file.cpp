@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "graph/cloud_normals.h"
+#include "cloud/cloud_normals.h"
 #include "io/formats.h"
 #include "io/input.h"
 #include "io/output.h"
@@ -168,7 +168,8 @@ Fields read_fields(const std::filesystem::path& path, const Context& context) {
     surface = triangulate(surface);
   }
   if (surface.is_point_cloud()) {
-    surface.normals = cloud_normals(surface, 16, context);
+    surface.normals =
+        cloud_normals(surface, nearest_neighbors(surface.positions, 16, context), context);
   } else if (surface.normals.empty()) {
     surface.normals = vertex_normals(surface, -1, context);
   }

@@ -22,6 +22,7 @@ constexpr double coarse_levels = 60;  // of the former: they go where no count w
 // More, in cells of so many vertices, many of which collapse one by one.
 constexpr double node_of_large_cell = 130, large_cell = 500;
 constexpr double point = 170, neighbor = 17;  // of a cloud, each of its neighbours
+constexpr double dense_point = 60;            // more, until thin_out() has passed
 constexpr double input_vertex = 12, input_corner = 4;
 constexpr double dense_vertex = 90;  // more, until coarsen() has passed
 constexpr double written_corner = 65;
@@ -87,8 +88,16 @@ struct Need {
 Need needed_by_cloud(const Mesh& input, const RemeshOptions& options, const Target& target) {
   const auto points = static_cast<double>(input.positions.size());
   const double written = options.edge_length > 0 ? points : 1 / target.face_area(1);
-  const auto neighbors = static_cast<double>(options.graph.neighbors);
-  return {points * (point + neighbor * neighbors), written * bytes_of_written_face(options)};
+  const double node = point + neighbor * static_cast<double>(options.graph.neighbors);
+  const double faces = written * bytes_of_written_face(options);
+  const double enough = target.density_of_cloud(options).points;
+  constexpr double most = 5;  // times as many as are enough are left
+  if (target.may_be_dense(options, input.positions.size()) && points > most * enough &&
+      enough > 0) {
+    const double before = points * dense_point;
+    return {before, std::max(0.0, most * enough * node + faces - before)};
+  }
+  return {points * node, std::max(0.0, enough - points) * node + faces};
 }
 
 /// The fields, and what comes of them, over a surface of so many vertices: the second are `added`.

@@ -6,9 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <span>
 #include <utility>
 
+#include "cloud/cloud_graph.h"
+#include "cloud/fill_in.h"
+#include "cloud/outliers.h"
+#include "cloud/smooth_noise.h"
 #include "features/askew_lines.h"
 #include "features/lines_abreast.h"
 #include "field/bend_alignment.h"
@@ -43,13 +48,34 @@ void Pipeline::build_graph() {
   hierarchy_ = {};
   hierarchy_.levels.push_back(stage_("graph", [&] {
     cut_surface();
-    around_ = is_cloud_ ? VertexFaces() : vertex_faces(surface_, context_);
-    return !is_cloud_ && nodes_are_vertices_
-               ? vertex_graph(surface_, around_, options_.graph, context_)
-               : meshgrain::build_graph(surface_, options_.graph, context_);
+    if (is_cloud_) return graph_of_cloud();
+    around_ = vertex_faces(surface_, context_);
+    return nodes_are_vertices_ ? vertex_graph(surface_, around_, options_.graph, context_)
+                               : meshgrain::build_graph(surface_, options_.graph, context_);
   }));
   result_.report.nodes = graph().size();
   result_.report.edges = graph().neighbors.size() / 2;
+}
+
+Graph Pipeline::graph_of_cloud() {
+  Neighborhoods nearest = nearest_neighbors(surface_.positions, options_.graph.neighbors, context_);
+  if (const std::size_t dropped = drop_outliers(surface_, nearest, context_)) {
+    add_notes({fmt::format("left out {} {} far from all others", dropped,
+                           dropped == 1 ? "point" : "points")});
+  }
+  if (smooth_noise(surface_, nearest, context_)) {
+    add_notes({"smoothed the points, whose noise is larger than they are apart"});
+  }
+  const bool knows_sides = !surface_.normals.empty();
+  const auto make_graph = [&] {
+    if (knows_sides) leave_out_other_sides(nearest, surface_.normals, context_);
+    return cloud_graph(surface_, nearest, options_.graph, context_);
+  };
+  Graph graph = make_graph();
+  const double area = std::accumulate(graph.areas.begin(), graph.areas.end(), 0.0);
+  surface_.normals = graph.normals;
+  const auto apart = static_cast<float>(target_.sparsest_points(options_, area));
+  return fill_in(surface_, nearest, apart, context_) > 0 ? make_graph() : graph;
 }
 
 void Pipeline::cut_surface() {

@@ -229,6 +229,9 @@ class Pipeline {
 
   /// Those that stay.
   void find_borders();
+  void thin_out_cloud();
+  /// Without outliers and noise, and with points between those that are few.
+  Graph graph_of_cloud();
   /// Where it is not manifold, once nothing is split any more; and undoes that.
   void cut_surface();
   void join_cuts();

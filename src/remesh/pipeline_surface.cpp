@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "cloud/thin_out.h"
 #include "mesh/border.h"
 #include "mesh/long_edges.h"
 #include "mesh/orient_faces.h"
@@ -99,7 +100,8 @@ void Pipeline::sharpen() {
 }
 
 void Pipeline::coarsen() {
-  if (is_cloud_ || !target_.is_dense(options_, surface_.positions.size(), input_size_)) return;
+  if (is_cloud_) return thin_out_cloud();
+  if (!target_.is_dense(options_, surface_.positions.size(), input_size_)) return;
   if (!is_in_order_) stage_("order", [&] { put_in_order(); });
   // What is a crease is to be seen where the surface is as it was.
   stage_("features", [&] {
@@ -118,6 +120,12 @@ void Pipeline::coarsen() {
     input_size_ = surface_size(surface_, context_);
     check_memory_of_coarse(surface_, input_size_.area, options_, target_, context_);
   });
+}
+
+void Pipeline::thin_out_cloud() {
+  if (!target_.may_be_dense(options_, surface_.positions.size())) return;
+  if (!is_in_order_) stage_("order", [&] { put_in_order(); });
+  stage_("coarsen", [&] { thin_out(surface_, target_.density_of_cloud(options_), context_); });
 }
 
 FeatureOptions Pipeline::feature_options() const {

@@ -78,6 +78,11 @@ double Target::longest_input_edge(const RemeshOptions& options, double area,
   return std::min(for_smallest ? longest / options.sizing.ratio : longest, 2 * mean_edge);
 }
 
+double Target::sparsest_points(const RemeshOptions& options, double area) const {
+  const double smallest = options.sizing.is_uniform() ? 1 : 1 / options.sizing.ratio;
+  return longest_edge() * edge_length(area) * smallest;
+}
+
 CoarseEdges Target::coarse_edges(const RemeshOptions& options, double area) const {
   // As few vertices as leave the fields as they were; measured. Nor must the surface of pure quads
   // be coarser than they are.
@@ -87,14 +92,26 @@ CoarseEdges Target::coarse_edges(const RemeshOptions& options, double area) cons
   return {static_cast<float>(shortest * longest), static_cast<float>(longest)};
 }
 
+CloudDensity Target::density_of_cloud(const RemeshOptions& options) const {
+  // What is nearer to each other than neighbours are counts as one side of a thin part.
+  constexpr double cell = 0.36;   // of the longest edge
+  constexpr double planes = 1.5;  // cells of a plane, by how many squares as wide cover it
+  const double smallest = options.sizing.is_uniform() ? 1 : 1 / options.sizing.ratio;
+  const double longest = cell * longest_edge() * smallest;
+  if (cells_ > 0) return {.points = planes * cells_ * cell_area_ / (longest * longest)};
+  return {.cell = longest * length_};
+}
+
+bool Target::may_be_dense(const RemeshOptions& options, std::size_t vertices) const {
+  constexpr std::size_t many = 8000;                      // for something to be gained
+  return options.coarsen && options.fields == nullptr &&  // of which all are wanted
+         options.graph.nodes == GraphNodes::vertices && vertices >= many;
+}
+
 bool Target::is_dense(const RemeshOptions& options, std::size_t vertices,
                       const SurfaceSize& size) const {
-  // For something to be gained.
   constexpr double enough = 0.9;  // of the shortest edges
-  constexpr std::size_t many = 8000;
-  const bool may = options.coarsen && options.fields == nullptr &&  // of which all are wanted
-                   options.graph.nodes == GraphNodes::vertices;
-  return may && vertices >= many &&
+  return may_be_dense(options, vertices) &&
          size.edges.mean < enough * double{coarse_edges(options, size.area).shortest};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cloud/thin_out.h"
 #include "mesh/surface_size.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/surface.h"
@@ -45,8 +46,17 @@ class Target {
   /// fine enough for the smallest.
   double longest_input_edge(const RemeshOptions& options, double area, double mean_edge) const;
 
+  /// What a cloud of many more points is thinned out to.
+  CloudDensity density_of_cloud(const RemeshOptions& options) const;
+
+  /// How far apart neighbouring points of a cloud may lie, if the surface has this area.
+  double sparsest_points(const RemeshOptions& options, double area) const;
+
   /// Between which lengths the edges of a dense surface are to be, of this area.
   CoarseEdges coarse_edges(const RemeshOptions& options, double area) const;
+
+  /// Whether so many vertices or points may be more than are needed.
+  bool may_be_dense(const RemeshOptions& options, std::size_t vertices) const;
 
   /// Whether a mesh of so many vertices and this size has so many more vertices than are needed
   /// that coarsen() pays.

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "graph/nearest_neighbors.h"
+#include "cloud/nearest_neighbors.h"
 #include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
 

@@ -28,6 +28,10 @@ struct Neighborhoods {
 Neighborhoods nearest_neighbors(std::span<const Vec3> points, std::size_t k,
                                 const Context& context = Context());
 
+/// Leaves out neighbours that look about the other way: across a thin part, to its other side.
+void leave_out_other_sides(Neighborhoods& nearest, std::span<const Vec3> normals,
+                           const Context& context = Context());
+
 /// For each query the index of the nearest of `points`, of which there must be one at least.
 std::vector<Index> nearest_points(std::span<const Vec3> points, std::span<const Vec3> queries,
                                   const Context& context = Context());

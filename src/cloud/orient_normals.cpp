@@ -1,4 +1,4 @@
-#include "graph/orient_normals.h"
+#include "cloud/orient_normals.h"
 
 #include <tbb/parallel_sort.h>
 

@@ -1,4 +1,4 @@
-#include "graph/nearest_neighbors.h"
+#include "cloud/nearest_neighbors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -102,6 +102,19 @@ Neighborhoods nearest_neighbors(std::span<const Vec3> points, std::size_t k,
     }
   });
   return result;
+}
+
+void leave_out_other_sides(Neighborhoods& nearest, std::span<const Vec3> normals,
+                           const Context& context) {
+  constexpr float other_way = -0.5f;
+  context.for_ranges(normals.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::span<Index> all(nearest.indices.data() + i * nearest.k, nearest.k);
+      const auto left = std::ranges::remove_if(
+          all, [&](Index j) { return j == no_index || normals[i].dot(normals[j]) < other_way; });
+      std::ranges::fill(left, no_index);
+    }
+  });
 }
 
 std::vector<Index> nearest_points(std::span<const Vec3> points, std::span<const Vec3> queries,
