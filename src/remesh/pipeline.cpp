@@ -10,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "cloud/cloud_border.h"
 #include "cloud/cloud_graph.h"
 #include "cloud/fill_in.h"
 #include "cloud/outliers.h"
@@ -75,7 +76,8 @@ Graph Pipeline::graph_of_cloud() {
   const double area = std::accumulate(graph.areas.begin(), graph.areas.end(), 0.0);
   surface_.normals = graph.normals;
   const auto apart = static_cast<float>(target_.sparsest_points(options_, area));
-  return fill_in(surface_, nearest, apart, context_) > 0 ? make_graph() : graph;
+  if (fill_in(surface_, nearest, apart, context_) > 0) graph = make_graph();
+  return graph;
 }
 
 void Pipeline::cut_surface() {
@@ -119,6 +121,14 @@ void Pipeline::find_lines() {
     lay_guides(mean_length());
   }
   constraints_ = guide_constraints(graph(), soft_guides_);
+  if (is_cloud_ && options_.features.align_border) {
+    constexpr double faces_across = 2;  // smaller holes are filled
+    stage_("features", [&] {
+      const double smallest = faces_across * target_.face_side(area_);
+      cloud_border_ = cloud_border(graph(), static_cast<float>(smallest), context_);
+    });
+    append(border_constraints(cloud_border_));
+  }
   if (is_cloud_ || !nodes_are_vertices_) return;
   if (options_.lock_borders) find_borders();
   stage_("features", [&] {

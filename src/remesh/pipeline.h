@@ -9,6 +9,7 @@
 
 #include "border/border_loops.h"
 #include "border/border_sizing.h"
+#include "cloud/cloud_border.h"
 #include "features/find_features.h"
 #include "features/guide_constraints.h"
 #include "finish/box_cells.h"
@@ -279,6 +280,7 @@ class Pipeline {
   Stages stage_;
   Frame frame_;
   Target target_;
+  std::vector<BorderNode> cloud_border_;
   bool is_cloud_, nodes_are_vertices_;
   // What the cells of the lattice become: OutputFaces::quads are four each. Where they are to be
   // quads themselves, it is quad_dominant, and few of the others are left for extraction to mend.

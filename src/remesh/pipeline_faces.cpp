@@ -217,6 +217,7 @@ Extraction Pipeline::extract(const PositionField& positions) {
                                                          : extract.cancelling_cost_where_graded;
   if (is_cloud_) {
     extract.largest_filled_gap = 12;  // a larger one may well be a hole
+    extract.border = border_edges(graph(), cloud_border_);
   } else if (nodes_are_vertices_) {
     extract.surface = &surface_;
     extract.features = &features_;
