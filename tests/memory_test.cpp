@@ -54,6 +54,22 @@ TEST(Memory, RefusesShortEdges) {
   EXPECT_NE(text.find("longer edges"), std::string::npos) << text;
 }
 
+/// As of an input in other units than the edge length.
+TEST(Memory, MoreFacesThanCanBeCountedAreRefusedWithoutALimit) {
+  Mesh cloud = sample_shape("sphere", 0.3);
+  cloud.faces.clear();
+  for (const Mesh& input : {sample_shape("sphere", 0.3), cloud}) {
+    EXPECT_NE(refusal(input, with_faces(2000000000, 0)).find("more than 1000000000: ask for fewer"),
+              std::string::npos);
+    RemeshOptions options;
+    options.edge_length = 1e-12;
+    const std::string text = refusal(input, options);
+    EXPECT_NE(text.find("e+25 faces, more than 1000000000: ask for longer edges"),
+              std::string::npos)
+        << text;
+  }
+}
+
 /// Fewer faces would not help.
 TEST(Memory, RefusesALargeInput) {
   const std::string text = refusal(sample_shape("blob", 2), with_faces(200, 8 * mib));

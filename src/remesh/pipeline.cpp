@@ -74,6 +74,7 @@ Graph Pipeline::graph_of_cloud() {
   };
   Graph graph = make_graph();
   const double area = std::accumulate(graph.areas.begin(), graph.areas.end(), 0.0);
+  target_.refuse_too_many(area);
   surface_.normals = graph.normals;
   const auto apart = static_cast<float>(target_.sparsest_points(options_, area));
   if (fill_in(surface_, nearest, apart, context_) > 0) graph = make_graph();

@@ -145,6 +145,7 @@ void Pipeline::refine() {
   if (!is_cloud_) {
     const double area = input_size_.area;
     if (!(area > 0)) throw Error("the input has no surface: all of its faces are degenerate");
+    target_.refuse_too_many(area);
     stage_("subdivide", [&] { split_long_edges(area, input_size_.edges); });
     lay_guides(target_.edge_length(area));
   }

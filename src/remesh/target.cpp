@@ -1,11 +1,14 @@
 #include "remesh/target.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
 #include "mesh/edges.h"
+#include "meshgrain/error.h"
 
 namespace meshgrain {
 
@@ -51,6 +54,14 @@ double Target::edge_length(double area) const {
 double Target::face_area(double area) const {
   const double length = edge_length(area);
   return length * length * cell_area_ / faces_per_cell_;
+}
+
+void Target::refuse_too_many(double area) const {
+  constexpr double most = 1e9;  // with four corners each, of which 2^32 can be told apart
+  const double faces = area / face_area(area);
+  if (!(faces > most)) return;
+  throw Error(fmt::format("this asks for about {:.2g} faces, more than {:.0f}: {}", faces, most,
+                          length_ > 0 ? "ask for longer edges" : "ask for fewer"));
 }
 
 double Target::face_side(double area) const {

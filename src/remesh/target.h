@@ -34,6 +34,9 @@ class Target {
   /// The area of one face of the written mesh, if the surface has this area.
   double face_area(double area) const;
 
+  /// Throws Error if a surface of this area would have more faces than can be counted.
+  void refuse_too_many(double area) const;
+
   /// The mean side of the written faces, if the surface has this area: of quads, or of the
   /// triangles that hexagons are dual to.
   double face_side(double area) const;
