@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/find_rings.h"
 #include "mesh/vertex_faces.h"
 #include "mesh/vertex_ring.h"
 #include "util/collect.h"
@@ -88,10 +89,33 @@ auto each_edge(const Mesh& mesh, const VertexFaces& around, const Take& take) {
   };
 }
 
+/// The same for those edges alone that are not at a ring, of which those that are sharp go to
+/// `sharp`.
+template <typename Take>
+void visit_odd_edges(const Mesh& mesh, const VertexFaces& around, std::size_t begin,
+                     std::size_t end, SharpSearch* sharp, const Take& take) {
+  std::vector<std::uint8_t> is_ring(end - begin, 0);
+  if (mesh.faces.uniform_degree() == 3) find_rings(mesh, around, begin, is_ring, sharp);
+  EdgesOfVertex edges;
+  for (auto v = static_cast<Index>(begin); v < end; ++v) {
+    if (!is_ring[v - begin]) edges.visit(mesh, around[v], v, take);
+  }
+}
+
 template <typename Selected, typename Take>
 std::vector<Selected> select_edges(const Mesh& mesh, const Take& take, const Context& context) {
   const VertexFaces around = vertex_faces(mesh, context);
   return collect<Selected>(mesh.positions.size(), each_edge(mesh, around, take), context);
+}
+
+template <typename Selected, typename Take>
+std::vector<Selected> select_odd_edges(const Mesh& mesh, const Take& take, const Context& context) {
+  const VertexFaces around = vertex_faces(mesh, context);
+  const auto visit = [&](std::size_t begin, std::size_t end, std::vector<Selected>& out) {
+    visit_odd_edges(mesh, around, begin, end, nullptr,
+                    [&](Index a, Index b, const EdgeFaces& faces) { take(a, b, faces, out); });
+  };
+  return collect<Selected>(mesh.positions.size(), visit, context);
 }
 
 using Edge = std::array<Index, 2>;
@@ -107,7 +131,7 @@ std::vector<std::uint8_t> mark_ends(std::span<const std::array<Index, 2>> edges,
 }
 
 std::vector<std::array<Index, 2>> border_edges(const Mesh& mesh, const Context& context) {
-  return select_edges<Edge>(
+  return select_odd_edges<Edge>(
       mesh,
       [](Index a, Index b, const EdgeFaces& faces, Edges& out) {
         if (faces.forth + faces.back != 1) return;
@@ -117,7 +141,7 @@ std::vector<std::array<Index, 2>> border_edges(const Mesh& mesh, const Context& 
 }
 
 std::vector<std::array<Index, 2>> rim_edges(const Mesh& mesh, const Context& context) {
-  return select_edges<Edge>(
+  return select_odd_edges<Edge>(
       mesh,
       [](Index a, Index b, const EdgeFaces& faces, Edges& out) {
         if (faces.forth != 1 || faces.back != 1) out.push_back({a, b});
@@ -126,7 +150,7 @@ std::vector<std::array<Index, 2>> rim_edges(const Mesh& mesh, const Context& con
 }
 
 std::vector<RimEdge> classified_rim(const Mesh& mesh, const Context& context) {
-  return select_edges<RimEdge>(
+  return select_odd_edges<RimEdge>(
       mesh,
       [](Index a, Index b, const EdgeFaces& faces, std::vector<RimEdge>& out) {
         if (faces.forth == 1 && faces.back == 1) return;
@@ -167,7 +191,7 @@ std::vector<TwoFacedEdge> two_faced_edges(const Mesh& mesh, const Context& conte
 }
 
 bool disagree_somewhere(const Mesh& mesh, const Context& context) {
-  const auto disagreeing = select_edges<Edge>(
+  const auto disagreeing = select_odd_edges<Edge>(
       mesh,
       [](Index a, Index b, const EdgeFaces& faces, Edges& out) {
         if (faces.forth + faces.back == 2 && faces.forth != 1) out.push_back({a, b});
@@ -196,17 +220,22 @@ RimAndSharpEdges rim_and_sharp_edges(const Mesh& mesh, double degrees, const Con
     std::vector<SharpEdge> sharp;
   };
   const double flattest = degrees < 0 ? 2 : std::cos(degrees * std::numbers::pi / 180);
-  const auto take = [&](Index a, Index b, const EdgeFaces& faces, Found& out) {
-    if (faces.forth != 1 || faces.back != 1) return out.rim.push_back({a, b});
-    const Vec3 &left = normals[faces.left], &right = normals[faces.right];
-    const double cosine = left.dot(right);
-    if (cosine < flattest && !left.isZero(0) && !right.isZero(0)) {
-      out.sharp.push_back({{a, b}, cosine});
-    }
-  };
   const VertexFaces around = vertex_faces(mesh, context);
-  const auto parts =
-      collect_parts<Found>(mesh.positions.size(), each_edge(mesh, around, take), context);
+  const auto find = [&](std::size_t begin, std::size_t end, Found& out) {
+    SharpSearch search{normals, flattest, out.sharp};
+    const auto take = [&](Index a, Index b, const EdgeFaces& faces) {
+      if (faces.forth != 1 || faces.back != 1) return out.rim.push_back({a, b});
+      const Vec3 &left = normals[faces.left], &right = normals[faces.right];
+      const double cosine = left.dot(right);
+      if (cosine < flattest && !left.isZero(0) && !right.isZero(0)) {
+        out.sharp.push_back({{a, b}, cosine});
+      }
+    };
+    visit_odd_edges(mesh, around, begin, end, &search, take);
+    // Those at rings came first.
+    std::ranges::sort(out.sharp, {}, &SharpEdge::ends);
+  };
+  const auto parts = collect_parts<Found>(mesh.positions.size(), find, context);
   RimAndSharpEdges result;
   for (const Found& found : parts) {
     result.rim.insert(result.rim.end(), found.rim.begin(), found.rim.end());

@@ -51,10 +51,18 @@ Form fit(std::size_t i, std::span<const Index> around, std::span<const Vec3> pos
   return squares.trace() > 0 ? Form(squares.ldlt().solve(right)) : Form::Zero();
 }
 
-/// A neighbour's form as seen in `to`, the planes turned into each other about their common line.
+/// The first vector of a frame once its plane is turned into another one about their common line:
+/// about itself, if they are opposite.
+Vector3d turned(const Frame& from, const Frame& to) {
+  constexpr double opposite = 1e-9;
+  const double length = 1 + from.n.dot(to.n);
+  if (length < opposite) return from.u;
+  return from.u - from.u.dot(to.n) / length * (from.n + to.n);
+}
+
+/// A neighbour's form as seen in `to`.
 Form transport(const Form& form, const Frame& from, const Frame& to) {
-  const Vector3d u = Eigen::Quaterniond::FromTwoVectors(from.n, to.n) * from.u;
-  const Vector2d cs = to.tangent(u);
+  const Vector2d cs = to.tangent(turned(from, to));
   const double c = cs.x(), s = cs.y();
   const double a = form[0], b = form[1], d = form[2];
   return {c * c * a - 2 * c * s * b + s * s * d, c * s * (a - d) + (c * c - s * s) * b,
