@@ -52,12 +52,16 @@ struct Flaws {
 /// Faces that are inverted, and pairs that pass through each other where the surface does not.
 struct Faults {
   std::size_t inverted = 0, crossings = 0;
-  std::vector<Index> nodes;  // of the surface, at these faces; increasing
+  std::vector<Index> nodes;              // of the surface, at these faces; increasing
+  std::vector<Index> nodes_of_inverted;  // those of the former alone
 
-  /// Less than two thirds as bad, and no more faces are inverted.
+  /// No more faces are inverted, and all is less than two thirds as bad; or none is any more, and
+  /// no more pass through each other.
   bool are_clearly_fewer_than(const Faults& other) const {
+    if (inverted > other.inverted) return false;
+    if (inverted == 0 && other.inverted > 0 && crossings <= other.crossings) return true;
     const auto badness = [](const Faults& of) { return 10 * of.inverted + of.crossings; };
-    return inverted <= other.inverted && 3 * badness(*this) < 2 * badness(other);
+    return 3 * badness(*this) < 2 * badness(other);
   }
 };
 

@@ -92,6 +92,8 @@ Faults Pipeline::find_faults() {
     ++faults.inverted;
     add(f);
   }
+  sort_unique(faults.nodes);
+  faults.nodes_of_inverted = faults.nodes;
   for (const auto& [f, g] : own(find_crossings(extraction_.mesh, context_))) {
     ++faults.crossings;
     add(f);

@@ -13,10 +13,15 @@
 namespace meshgrain {
 namespace {
 
-/// Whether faults are more than a few crossings.
-bool has_many_faults(const Made& made) {
-  return made.faults.inverted > 0 ||
-         made.faults.crossings > made.result.mesh.faces.size() / Flaws::hopeless;
+/// Whether so many faces pass through each other that little can be seen of what the surface is:
+/// fewer are no reason to change it.
+bool has_many_crossings(const Made& made) {
+  constexpr std::size_t many = 10;  // one in so many faces
+  return made.faults.crossings > made.result.mesh.faces.size() / many;
+}
+
+bool has_serious_faults(const Made& made) {
+  return made.faults.inverted > 0 || has_many_crossings(made);
 }
 
 double diagonal(const Mesh& mesh) {
@@ -65,15 +70,17 @@ class SimplerTopology {
     constexpr double of_diagonal = 0.25;  // a wider tunnel is what the shape is about
     const double longest = of_diagonal * diagonal(before.result.fields.surface);
     std::size_t closed_before = 0;
+    const Faults& faults = before.faults;
+    const std::vector<Index>& near =
+        has_many_crossings(before) ? faults.nodes : faults.nodes_of_inverted;
     // How many sides of faces are around the widest tunnels that are closed.
     for (const double sides_around : {4.0, 6.0}) {
-      if (!has_many_faults(made_)) break;
+      if (!has_serious_faults(made_)) break;
       Mesh surface = before.result.fields.surface;
       if (!before.has_marks) surface.marked_edges.clear();  // creases are found anew
       const double most = std::min(sides_around * before.side, longest);
-      const std::size_t closed = stage_("tunnels", [&] {
-        return meshgrain::close_tunnels(surface, before.faults.nodes, most, context_);
-      });
+      const std::size_t closed = stage_(
+          "tunnels", [&] { return meshgrain::close_tunnels(surface, near, most, context_); });
       constexpr double considerably = 1.05;  // else it would be about the same once more
       const bool are_more =
           static_cast<double>(closed) > considerably * static_cast<double>(closed_before);
@@ -127,7 +134,7 @@ bool may_be_simpler(const RemeshOptions& options) {
 void try_simpler_topology(Made& made, const RemeshOptions& options, const Make& make,
                           const Context& context) {
   const bool is_cloud = made.result.fields.surface.is_point_cloud();
-  if (is_cloud || !may_be_simpler(options) || !has_many_faults(made)) return;
+  if (is_cloud || !may_be_simpler(options) || !has_serious_faults(made)) return;
   SimplerTopology(made, options, make, context).run();
 }
 

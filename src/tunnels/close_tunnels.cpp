@@ -174,28 +174,35 @@ std::vector<Tunnel> find_tunnels(const Mesh& mesh, TunnelSearch::Kind kind,
 std::size_t close_tunnels(Mesh& triangles, std::span<const Index> near, double longest,
                           const Context& context) {
   using enum TunnelSearch::Kind;
-  std::size_t count = 0;
   double longest_closed = 0;
-  const auto close_all = [&](TunnelSearch::Kind kind, std::span<const Index> seeds, double most) {
+  const auto close_all = [&](Mesh& mesh, TunnelSearch::Kind kind, std::span<const Index> seeds,
+                             double most) {
     constexpr int most_rounds = 8;
+    std::size_t count = 0;
     for (int round = 0; round < most_rounds; ++round) {
-      const auto tunnels = find_tunnels(triangles, kind, seeds, most, context);
+      const auto tunnels = find_tunnels(mesh, kind, seeds, most, context);
       if (tunnels.empty()) break;
-      close(triangles, tunnels);
+      close(mesh, tunnels);
       count += tunnels.size();
       for (const Tunnel& tunnel : tunnels) longest_closed = std::max(longest_closed, tunnel.loop);
     }
+    return count;
   };
-  close_all(hollow, near, longest);
-  // Of holes alike none should stay open.
+  std::size_t count = close_all(triangles, hollow, near, longest);
   if (count > 0) {
+    Mesh without_others = triangles;
     std::vector<Index> all(triangles.positions.size());
     std::iota(all.begin(), all.end(), Index{0});
     constexpr double alike = 1.1;
-    close_all(hollow, all, std::min(longest, alike * longest_closed));
+    const double most = std::min(longest, alike * longest_closed);
+    const std::size_t others = close_all(without_others, hollow, all, most);
+    if (others <= count) {
+      triangles = std::move(without_others);
+      count += others;
+    }
   }
   // What is left between holes side by side is a short handle, too, until these are closed.
-  close_all(handle, near, longest / 2);
+  count += close_all(triangles, handle, near, longest / 2);
   if (count > 0) drop_unused_vertices(triangles, context);
   return count;
 }
