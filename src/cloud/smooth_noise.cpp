@@ -48,7 +48,7 @@ bool smooth_noise(Mesh& cloud, Neighborhoods& nearest, const Context& context) {
   // Without noise, points as far apart as fingers are wide come to 0.25.
   constexpr float rough = 0.3f;
   constexpr int most_times = 3;
-  constexpr std::size_t widest = 4;  // times as many neighbours
+  constexpr std::size_t widest = 8;  // times as many neighbours
   const std::size_t k = nearest.k;
   int times = 0;
   for (; times < most_times && roughness(cloud, nearest, context) > rough; ++times) {
