@@ -32,9 +32,9 @@ struct FeatureLines {
 /// Which edges are creases, beside those that are marked (Mesh::marked_edges).
 enum class Creases {
   automatic,  ///< Of mechanical parts: edges clearly sharper than all that are meant to be smooth.
-  by_angle,
-  marked,  ///< Only edges that are marked (Mesh::marked_edges).
-  none,    ///< Not even marked edges.
+  by_angle,   ///< Edges that are sharp enough; of a sculpture, lines of them that faces can follow.
+  marked,     ///< Only edges that are marked (Mesh::marked_edges).
+  none,       ///< Not even marked edges.
 };
 
 struct FeatureOptions {

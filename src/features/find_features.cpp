@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "features/leave_out_creases.h"
+#include "features/leave_out_fragments.h"
 #include "features/mechanical_creases.h"
 #include "mesh/border.h"
 #include "mesh/marks.h"
@@ -32,7 +35,20 @@ struct RimAndCreases {
   Edges rim, creases;  // creases: those that are not marked
 };
 
-RimAndCreases rim_and_creases(const Mesh& mesh, const FeatureOptions& options,
+/// The edges of a sculpture that are as sharp as was asked for are mostly of detail, which nobody
+/// meant to be lines.
+Edges creases_by_angle(const Mesh& mesh, const RimAndSharpEdges& found, double degrees,
+                       double edge_length, const Context& context) {
+  const double flattest = degrees < 0 ? 2 : std::cos(degrees * std::numbers::pi / 180);
+  Edges creases;
+  for (const SharpEdge& edge : found.sharp) {
+    if (edge.cosine < flattest) creases.push_back(edge.ends);
+  }
+  if (!mechanical_creases(mesh, found, context).empty()) return creases;
+  return leave_out_fragments(mesh, found.rim, std::move(creases), edge_length);
+}
+
+RimAndCreases rim_and_creases(const Mesh& mesh, const FeatureOptions& options, double edge_length,
                               const Context& context) {
   if (options.creases == Creases::automatic) {
     auto found = rim_and_sharp_edges(mesh, flat_degrees, context);
@@ -40,9 +56,9 @@ RimAndCreases rim_and_creases(const Mesh& mesh, const FeatureOptions& options,
     return {std::move(found.rim), std::move(creases)};
   }
   if (options.creases == Creases::by_angle) {
-    auto found = rim_and_sharp_edges(mesh, options.crease_degrees, context);
-    Edges creases;
-    for (const SharpEdge& edge : found.sharp) creases.push_back(edge.ends);
+    const double degrees = options.crease_degrees;
+    auto found = rim_and_sharp_edges(mesh, std::min(degrees, flat_degrees), context);
+    Edges creases = creases_by_angle(mesh, found, degrees, edge_length, context);
     return {std::move(found.rim), std::move(creases)};
   }
   return {rim_edges(mesh, context), {}};
@@ -55,15 +71,16 @@ bool FeatureLines::is_closed(std::size_t line) const {
   return v == vertices[end(line) - 1] && !std::binary_search(corners.begin(), corners.end(), v);
 }
 
-Edges find_creases(const Mesh& mesh, const FeatureOptions& options, const Context& context) {
+Edges find_creases(const Mesh& mesh, const FeatureOptions& options, double edge_length,
+                   const Context& context) {
   const bool any = options.creases == Creases::automatic || options.creases == Creases::by_angle;
-  return any ? rim_and_creases(mesh, options, context).creases : Edges();
+  return any ? rim_and_creases(mesh, options, edge_length, context).creases : Edges();
 }
 
 std::vector<EdgeOfLine> feature_edges(const Mesh& mesh, const FeatureOptions& options,
                                       double edge_length, const Context& context,
                                       std::span<const std::array<Index, 2>> cuts) {
-  auto [rim, creases] = rim_and_creases(mesh, options, context);
+  auto [rim, creases] = rim_and_creases(mesh, options, edge_length, context);
   if (!cuts.empty()) {
     rim.insert(rim.end(), cuts.begin(), cuts.end());
     sort_unique(rim);

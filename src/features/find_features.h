@@ -9,9 +9,10 @@
 
 namespace meshgrain {
 
-/// The creases that are not marked, as the vertices at their ends.
+/// The creases that are not marked, as the vertices at their ends, for faces with sides of
+/// `edge_length`.
 std::vector<std::array<Index, 2>> find_creases(const Mesh& triangles, const FeatureOptions& options,
-                                               const Context& context);
+                                               double edge_length, const Context& context);
 
 /// The edges of the border and of the creases, each once, but for creases that faces with sides of
 /// `edge_length` could not follow. `cuts`: more edges, sorted, that are lines as the border is.

@@ -106,7 +106,8 @@ void Pipeline::coarsen() {
   // What is a crease is to be seen where the surface is as it was.
   stage_("features", [&] {
     had_marks_ = !surface_.marked_edges.empty();
-    const auto creases = find_creases(surface_, feature_options(), context_);
+    const double side = target_.face_side(input_size_.area);
+    const auto creases = find_creases(surface_, feature_options(), side, context_);
     surface_.marked_edges.insert(surface_.marked_edges.end(), creases.begin(), creases.end());
   });
   is_coarsened_ = true;
