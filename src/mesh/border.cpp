@@ -89,7 +89,7 @@ auto each_edge(const Mesh& mesh, const VertexFaces& around, const Take& take) {
   };
 }
 
-/// The same for those edges alone that are not at a ring, of which those that are sharp go to
+/// The same without the edges of vertices that are rings, of which those that are sharp go to
 /// `sharp`.
 template <typename Take>
 void visit_odd_edges(const Mesh& mesh, const VertexFaces& around, std::size_t begin,
