@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "features/leave_out_creases.h"
@@ -39,10 +37,10 @@ struct RimAndCreases {
 /// meant to be lines.
 Edges creases_by_angle(const Mesh& mesh, const RimAndSharpEdges& found, double degrees,
                        double edge_length, const Context& context) {
-  const double flattest = degrees < 0 ? 2 : std::cos(degrees * std::numbers::pi / 180);
+  const double cosine = sharp_cosine(degrees);
   Edges creases;
   for (const SharpEdge& edge : found.sharp) {
-    if (edge.cosine < flattest) creases.push_back(edge.ends);
+    if (edge.cosine < cosine) creases.push_back(edge.ends);
   }
   if (!mechanical_creases(mesh, found, context).empty()) return creases;
   return leave_out_fragments(mesh, found.rim, std::move(creases), edge_length);

@@ -90,9 +90,7 @@ class Leaving {
 
   template <typename Visit>
   void for_samples(const Edge& edge, const Visit& visit) const {
-    const Point from = point(edge[0]), along = point(edge[1]) - from;
-    const double count = std::max(1.0, std::ceil(along.norm() / (step * edge_length_)));
-    for (double k = 0.5; k < count; ++k) visit(Point(from + (k / count) * along));
+    meshgrain::for_samples(point(edge[0]), point(edge[1]), step * edge_length_, visit);
   }
 
   void add_samples(Index line, std::size_t k) {

@@ -1,10 +1,13 @@
 #include "features/leave_out_fragments.h"
 
+#include <Eigen/Core>
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <iterator>
 #include <numeric>
 #include <unordered_map>
+#include <utility>
 
 #include "features/chain_edges.h"
 #include "features/line_samples.h"
@@ -37,14 +40,6 @@ class Fragments {
   }
 
  private:
-  /// What is left, as lines; those of the rim come with them.
-  FeatureLines lines() const {
-    std::vector<EdgeOfLine> edges;
-    for (const Edge& ends : rim_) edges.push_back({ends, LineKind::border});
-    for (const Edge& ends : creases_) edges.push_back({ends, LineKind::crease});
-    return chain_edges(mesh_, edges, {}, side_);
-  }
-
   struct Line {
     std::vector<Index> vertices;
     double length = 0;
@@ -52,10 +47,13 @@ class Fragments {
 
   Point point(Index v) const { return mesh_.positions[v].cast<double>(); }
 
-  /// The lines of creases.
+  /// The lines of what is left, which end where they meet the rim, too.
   std::vector<Line> crease_lines() const {
+    std::vector<EdgeOfLine> edges;
+    for (const Edge& ends : rim_) edges.push_back({ends, LineKind::border});
+    for (const Edge& ends : creases_) edges.push_back({ends, LineKind::crease});
+    const FeatureLines all = chain_edges(mesh_, edges, {}, side_);
     std::vector<Line> result;
-    const FeatureLines all = lines();
     for (std::size_t line = 0; line < all.size(); ++line) {
       Line found;
       found.vertices.assign(all.vertices.begin() + all.begin(line),
@@ -134,15 +132,17 @@ class Fragments {
     std::ranges::stable_sort(order,
                              [&](Index a, Index b) { return lines[a].length > lines[b].length; });
     LineSamples kept(crowded * side_);
-    for (const Edge& ends : rim_) {
-      for (const Point& p : samples(ends[0], ends[1])) add(kept, p);
-    }
+    const auto keep = [&](const Point& p) { kept.add({p, Point::Zero(), Point::Zero(), 0, 0}); };
+    const auto for_each_sample = [&](Index a, Index b, const auto& visit) {
+      for_samples(point(a), point(b), step * side_, visit);
+    };
+    for (const Edge& ends : rim_) for_each_sample(ends[0], ends[1], keep);
     std::vector<std::uint8_t> goes(lines.size(), 0);
     for (const Index i : order) {
       std::vector<Point> own;
       for (std::size_t k = 1; k < lines[i].vertices.size(); ++k) {
-        const auto more = samples(lines[i].vertices[k - 1], lines[i].vertices[k]);
-        own.insert(own.end(), more.begin(), more.end());
+        for_each_sample(lines[i].vertices[k - 1], lines[i].vertices[k],
+                        [&](const Point& p) { own.push_back(p); });
       }
       const auto is_near = [&](const Point& p) {
         bool any = false;
@@ -150,22 +150,9 @@ class Fragments {
         return any;
       };
       goes[i] = 2 * std::ranges::count_if(own, is_near) > std::ssize(own);
-      if (goes[i]) continue;
-      for (const Point& p : own) add(kept, p);
+      if (!goes[i]) std::ranges::for_each(own, keep);
     }
     remove(lines, goes);
-  }
-
-  static void add(LineSamples& samples, const Point& p) {
-    samples.add({p, Point::Zero(), Point::Zero(), 0, 0});
-  }
-
-  std::vector<Point> samples(Index a, Index b) const {
-    const Point from = point(a), along = point(b) - from;
-    const double count = std::max(1.0, std::ceil(along.norm() / (step * side_)));
-    std::vector<Point> result;
-    for (double k = 0.5; k < count; ++k) result.emplace_back(from + (k / count) * along);
-    return result;
   }
 
   const Mesh& mesh_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <unordered_map>
@@ -10,6 +11,15 @@
 #include "util/hash.h"
 
 namespace meshgrain {
+
+/// Calls `visit(point)` for points along a segment, no farther apart than that; for one at least.
+template <typename Visit>
+void for_samples(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double apart,
+                 const Visit& visit) {
+  const Eigen::Vector3d along = to - from;
+  const double count = std::max(1.0, std::ceil(along.norm() / apart));
+  for (double k = 0.5; k < count; ++k) visit(Eigen::Vector3d(from + (k / count) * along));
+}
 
 /// Points along lines, found again by their place.
 class LineSamples {

@@ -200,6 +200,10 @@ bool disagree_somewhere(const Mesh& mesh, const Context& context) {
   return !disagreeing.empty();
 }
 
+double sharp_cosine(double degrees) {
+  return degrees < 0 ? 2 : std::cos(degrees * std::numbers::pi / 180);
+}
+
 RimAndSharpEdges rim_and_sharp_edges(const Mesh& mesh, double degrees, const Context& context) {
   // Unit normals of the faces, or zero.
   std::vector<Vec3> normals(mesh.faces.size());
@@ -219,17 +223,12 @@ RimAndSharpEdges rim_and_sharp_edges(const Mesh& mesh, double degrees, const Con
     Edges rim;
     std::vector<SharpEdge> sharp;
   };
-  const double flattest = degrees < 0 ? 2 : std::cos(degrees * std::numbers::pi / 180);
   const VertexFaces around = vertex_faces(mesh, context);
   const auto find = [&](std::size_t begin, std::size_t end, Found& out) {
-    SharpSearch search{normals, flattest, out.sharp};
+    SharpSearch search{normals, sharp_cosine(degrees), out.sharp};
     const auto take = [&](Index a, Index b, const EdgeFaces& faces) {
       if (faces.forth != 1 || faces.back != 1) return out.rim.push_back({a, b});
-      const Vec3 &left = normals[faces.left], &right = normals[faces.right];
-      const double cosine = left.dot(right);
-      if (cosine < flattest && !left.isZero(0) && !right.isZero(0)) {
-        out.sharp.push_back({{a, b}, cosine});
-      }
+      search.look_at({a, b}, faces.left, faces.right);
     };
     visit_odd_edges(mesh, around, begin, end, &search, take);
     // Those at rings came first.

@@ -64,6 +64,10 @@ struct SharpEdge {
   double cosine;
 };
 
+/// What that cosine is less than where an edge is sharper than so many degrees; below none, all
+/// are.
+double sharp_cosine(double degrees);
+
 /// rim_edges() and sharp_edges(), found together.
 struct RimAndSharpEdges {
   std::vector<std::array<Index, 2>> rim;

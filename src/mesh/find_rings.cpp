@@ -43,13 +43,14 @@ HWY_INLINE Few find_equal(const Few& values, const Few& others, std::size_t coun
   return result;
 }
 
-/// The triangles around a vertex: those that come after it, and before it, in each, and the bits of
-/// the triangle where the former come before it.
+/// The triangles around a vertex: who comes after it in each, and the bits of those where that one
+/// comes before it.
 struct Fan {
   std::size_t count;
-  Few next{}, last{}, partners{};
+  Few next{}, partners{};
 
   Fan(const Index* corners, std::span<const Index> faces, Index v) : count(faces.size()) {
+    Few last{};
     for (std::size_t k = 0; k < count; ++k) {
       const auto [after, before] = next_corners(corners + std::size_t{3} * faces[k], v);
       next[k] = after;
@@ -73,23 +74,18 @@ struct Fan {
 /// Sharp edges from v, of a ring, to larger indices.
 HWY_INLINE void add_sharp(const Fan& fan, std::span<const Index> faces, Index v,
                           SharpSearch& sharp) {
-  const auto normals_at = [&](std::size_t k) {
-    const auto partner = static_cast<std::size_t>(std::countr_zero(fan.partners[k]));
-    return std::array{&sharp.normals[faces[k]], &sharp.normals[faces[partner]]};
+  const auto partner = [&](std::size_t k) {
+    return faces[static_cast<std::size_t>(std::countr_zero(fan.partners[k]))];
   };
-  std::array<double, most> cosines;
-  std::uint32_t sharp_ones = 0;
+  std::uint32_t candidates = 0;
   for (std::size_t k = 0; k < fan.count; ++k) {
-    const auto [left, right] = normals_at(k);
-    cosines[k] = left->dot(*right);
-    sharp_ones |= std::uint32_t{cosines[k] < sharp.flattest && fan.next[k] > v} << k;
+    const bool is_sharp = sharp.cosine(faces[k], partner(k)) < sharp.flattest;
+    candidates |= std::uint32_t{is_sharp && fan.next[k] > v} << k;
   }
   const std::size_t known = sharp.found.size();
-  for (; sharp_ones != 0; sharp_ones &= sharp_ones - 1) {
-    const auto k = static_cast<std::size_t>(std::countr_zero(sharp_ones));
-    const auto [left, right] = normals_at(k);
-    if (left->isZero(0) || right->isZero(0)) continue;
-    sharp.found.push_back({{v, fan.next[k]}, cosines[k]});
+  for (; candidates != 0; candidates &= candidates - 1) {
+    const auto k = static_cast<std::size_t>(std::countr_zero(candidates));
+    sharp.look_at({v, fan.next[k]}, faces[k], partner(k));
   }
   std::sort(sharp.found.begin() + static_cast<std::ptrdiff_t>(known), sharp.found.end(),
             [](const SharpEdge& a, const SharpEdge& b) { return a.ends < b.ends; });

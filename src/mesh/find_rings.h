@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -15,6 +17,16 @@ struct SharpSearch {
   std::span<const Vec3> normals;  ///< Of the faces; zero where one has none.
   double flattest;                ///< Their cosine is less at sharp edges.
   std::vector<SharpEdge>& found;
+
+  double cosine(Index left, Index right) const { return normals[left].dot(normals[right]); }
+
+  /// Adds the edge between two faces, if it is sharp.
+  void look_at(const std::array<Index, 2>& ends, Index left, Index right) {
+    const double here = cosine(left, right);
+    if (here < flattest && !normals[left].isZero(0) && !normals[right].isZero(0)) {
+      found.push_back({ends, here});
+    }
+  }
 };
 
 /// Sets whether the vertices from `begin` on, as many as there are flags, of a mesh of triangles
