@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "features/leave_out_fragments.h"
+#include "meshgrain/features.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
 #include "meshgrain/statistics.h"
@@ -94,7 +95,12 @@ TEST(FragmentsOfSculptures, DoNotSpoilTheFaces) {
   RemeshOptions options;
   options.face_count = 600;
   options.features.creases = Creases::by_angle;
-  options.features.crease_degrees = 30;
+  options.features.crease_degrees = 15;
+  const auto followed = [&](double edge_length) {
+    return find_features(bumpy, options.features, edge_length, Context()).vertices.size();
+  };
+  ASSERT_GT(followed(0), 200u);  // by faces of no size: all of them
+  EXPECT_LT(followed(0.3), followed(0) / 4);
   const RemeshResult result = remesh(bumpy, options);
   const MeshStatistics s = mesh_statistics(result.mesh);
   EXPECT_EQ(s.inverted_quads, 0u);
