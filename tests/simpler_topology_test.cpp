@@ -5,8 +5,10 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "mesh/border.h"
 #include "mesh/vertex_faces.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
@@ -50,16 +52,16 @@ std::size_t cut_slits(Mesh& mesh, std::size_t most) {
   return count;
 }
 
-/// Many slits that are shorter than faces are cuts between the parts of a scan.
-TEST(SimplerTopology, SlitsAreClosedWhereTheyWouldSpoilFaces) {
-  const Mesh whole = sample_shape("torus");
-  Mesh input = whole;
-  constexpr std::size_t slits = 200;
-  ASSERT_EQ(cut_slits(input, slits), slits);
-  ASSERT_EQ(mesh_statistics(input).boundary_loops, slits);
+constexpr std::size_t many_slits = 200;
+
+/// Of a torus with slits that are shorter than faces, as there are between the parts of a scan, and
+/// what else it has.
+RemeshResult expect_closed_slits(const Mesh& input, const Mesh& whole) {
+  EXPECT_EQ(mesh_statistics(input).boundary_loops,
+            many_slits + mesh_statistics(whole).boundary_loops);
   RemeshOptions options;
   options.face_count = 400;
-  const RemeshResult coarse = remesh(input, options);
+  RemeshResult coarse = remesh(input, options);
   const MeshStatistics s = mesh_statistics(coarse.mesh);
   made::expect_same_topology(s, mesh_statistics(whole));
   EXPECT_EQ(s.inverted_quads, 0u);
@@ -68,6 +70,44 @@ TEST(SimplerTopology, SlitsAreClosedWhereTheyWouldSpoilFaces) {
     return note.starts_with("merged 200 vertices along seams");
   }));
   EXPECT_EQ(coarse.report.input_vertices, input.positions.size());
+  return coarse;
+}
+
+auto times_of(const RemeshResult& result, const std::string& stage) {
+  return std::ranges::count(result.report.stages, stage, &StageTime::name);
+}
+
+TEST(SimplerTopology, ShortSlitsAloneAreClosedAtOnce) {
+  const Mesh whole = sample_shape("torus");
+  Mesh input = whole;
+  ASSERT_EQ(cut_slits(input, many_slits), many_slits);
+  const RemeshResult coarse = expect_closed_slits(input, whole);
+  EXPECT_EQ(times_of(coarse, "clean"), 1);
+  EXPECT_EQ(times_of(coarse, "join seams"), 0);
+}
+
+Mesh without_face(const Mesh& mesh, std::size_t gone) {
+  Mesh result = mesh;
+  result.faces = {};
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    if (f != gone) result.faces.push_back(mesh.faces[f]);
+  }
+  return result;
+}
+
+/// With a hole besides, all are kept at first.
+TEST(SimplerTopology, SlitsAreClosedWhereTheyWouldSpoilFaces) {
+  const Mesh whole = sample_shape("torus");
+  Mesh input = whole;
+  ASSERT_EQ(cut_slits(input, many_slits), many_slits);
+  const auto on_slit = mark_ends(border_edges(input), input.positions.size());
+  std::size_t f = 0;  // away from them
+  while (std::ranges::any_of(std::as_const(input.faces)[f],
+                             [&](Index v) { return on_slit[v] != 0; })) {
+    ASSERT_LT(++f, input.faces.size());
+  }
+  const RemeshResult coarse = expect_closed_slits(without_face(input, f), without_face(whole, f));
+  EXPECT_EQ(times_of(coarse, "join seams"), 1);
 }
 
 TEST(SimplerTopology, SlitsStayWhereThereIsRoom) {

@@ -42,7 +42,7 @@ std::size_t BadPlaces::count_crossings(const BadPlace& place, std::size_t limit)
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     for (std::size_t j = i + 1; j < boxes.size() && count < limit; ++j) {
       count +=
-          boxes[i].intersects(boxes[j]) && penetration(mesh_, place.faces[i], place.faces[j]) > 0;
+          boxes[i].intersects(boxes[j]) && cross_if_near(mesh_, place.faces[i], place.faces[j]);
     }
   }
   return count;

@@ -117,7 +117,10 @@ double depth(const Triangle& of, int edge, const Heights& over, const Triangle& 
   return std::min(std::abs(ds), std::abs(dt)) / normal.norm();
 }
 
-double penetration(const Triangle& a, const Triangle& b) {
+/// Calls add(depth) for the edges of two triangles that may pass through the other one, while it
+/// returns true. Returns whether it always did.
+template <typename Add>
+bool add_depths(const Triangle& a, const Triangle& b, const Add& add) {
   int shared = 0, own = 0, other = 0;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
@@ -127,16 +130,17 @@ double penetration(const Triangle& a, const Triangle& b) {
       other = j;
     }
   }
-  if (shared > 1) return 0;
+  if (shared > 1) return true;
   const Heights b_over_a = heights(b, a), a_over_b = heights(a, b);
   // At a shared corner only the edges opposite of it can pass through.
   if (shared == 1) {
-    return depth(a, (own + 1) % 3, a_over_b, b) + depth(b, (other + 1) % 3, b_over_a, a);
+    return add(depth(a, (own + 1) % 3, a_over_b, b)) && add(depth(b, (other + 1) % 3, b_over_a, a));
   }
-  if (beside(b_over_a) || beside(a_over_b)) return 0;
-  double sum = 0;
-  for (int k = 0; k < 3; ++k) sum += depth(a, k, a_over_b, b) + depth(b, k, b_over_a, a);
-  return sum;
+  if (beside(b_over_a) || beside(a_over_b)) return true;
+  for (int k = 0; k < 3; ++k) {
+    if (!add(depth(a, k, a_over_b, b)) || !add(depth(b, k, b_over_a, a))) return false;
+  }
+  return true;
 }
 
 /// Whether a plane parts two faces, but for the corners that they share: so most neighbours lie,
@@ -183,20 +187,18 @@ bool are_parted(const Mesh& mesh, std::span<const Index> f, std::span<const Inde
   return count == 0 ? g_low - f_high > clear : f_high < -clear && g_low > clear;
 }
 
-}  // namespace
-
-double penetration_of_near(const Mesh& mesh, Index f, Index g) {
-  if (are_parted(mesh, mesh.faces[f], mesh.faces[g])) return 0;
+/// The same for all triangles of two faces whose boxes meet.
+template <typename Add>
+void add_depths(const Mesh& mesh, Index f, Index g, const Add& add) {
+  if (are_parted(mesh, mesh.faces[f], mesh.faces[g])) return;
   const FaceTriangles own(mesh, f), other(mesh, g);
-  double sum = 0;
   for (const Triangle& t : own.all()) {
     if (beside(other, t)) continue;
-    for (const Triangle& u : other.all()) sum += penetration(t, u);
+    for (const Triangle& u : other.all()) {
+      if (!add_depths(t, u, add)) return;
+    }
   }
-  return sum;
 }
-
-namespace {
 
 /// The faces of a mesh by the cells of a grid that their boxes touch.
 class FaceGrid {
@@ -292,6 +294,21 @@ FaceGrid::FaceGrid(const Mesh& mesh, const Context& context) : boxes_(mesh.faces
 
 }  // namespace
 
+double penetration_of_near(const Mesh& mesh, Index f, Index g) {
+  double sum = 0;
+  add_depths(mesh, f, g, [&](double depth) {
+    sum += depth;
+    return true;
+  });
+  return sum;
+}
+
+bool cross_if_near(const Mesh& mesh, Index f, Index g) {
+  bool any = false;
+  add_depths(mesh, f, g, [&](double depth) { return !(any = depth > 0); });
+  return any;
+}
+
 Eigen::AlignedBox3f face_box(const Mesh& mesh, Index f) {
   Eigen::AlignedBox3f box;
   for (const Index v : mesh.faces[f]) box.extend(mesh.positions[v]);
@@ -310,7 +327,7 @@ std::vector<std::array<Index, 2>> find_crossings(const Mesh& mesh, const Context
       [&](std::size_t begin, std::size_t end, std::vector<std::array<Index, 2>>& found) {
         for (std::size_t bucket = begin; bucket < end; ++bucket) {
           grid.for_each_pair(bucket, [&](Index f, Index g) {
-            if (penetration_of_near(mesh, f, g) > 0) found.push_back({f, g});
+            if (cross_if_near(mesh, f, g)) found.push_back({f, g});
           });
         }
       },
@@ -338,7 +355,7 @@ std::size_t count_crossings_of(const Mesh& mesh, std::span<const Index> some,
       const bool is_one_of_them = std::ranges::binary_search(some, g);
       for (std::size_t k = 0; k < some.size(); ++k) {
         if (is_one_of_them && some[k] >= g) break;
-        here += boxes[k].intersects(box) && penetration_of_near(mesh, some[k], g) > 0;
+        here += boxes[k].intersects(box) && cross_if_near(mesh, some[k], g);
       }
     }
     count += here;

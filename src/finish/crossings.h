@@ -18,6 +18,8 @@ Eigen::AlignedBox3f face_box(const Mesh& mesh, Index f);
 double penetration(const Mesh& mesh, Index f, Index g);
 /// The same where the boxes of two different faces meet.
 double penetration_of_near(const Mesh& mesh, Index f, Index g);
+/// Whether that is more than 0.
+bool cross_if_near(const Mesh& mesh, Index f, Index g);
 
 /// All pairs of faces that pass through each other, the lower number first, in increasing order.
 std::vector<std::array<Index, 2>> find_crossings(const Mesh& mesh, const Context& context);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "finish/crossings.h"
@@ -73,24 +74,30 @@ class Untwisting {
         mesh_.faces.size(), [&](Index f) { return is_twisted(f); }, context_);
   }
 
-  /// What a face is worth if either the surface or its neighbours say which side is up.
-  float quality(Index f) const {
-    Vec3 of_surface = Vec3::Zero(), of_neighbors = Vec3::Zero();
+  /// What a face is worth if either the surface or its neighbours say which side is up; from
+  /// `enough` on it need not be exact.
+  float quality(Index f, float enough) const {
+    const Vec3 area = area_vector(face(f), mesh_.positions);
+    Vec3 of_surface = Vec3::Zero();
+    for (const Index v : face(f)) of_surface += node_normals_[extraction_.nodes[v]];
+    const float by_surface = face_quality(face(f), mesh_.positions, area, of_surface.normalized());
+    if (by_surface >= enough) return by_surface;
+    Vec3 of_neighbors = Vec3::Zero();
     for (const Index v : face(f)) {
-      of_surface += node_normals_[extraction_.nodes[v]];
       for (const Index g : around_[v]) of_neighbors += area_vector(face(g), mesh_.positions);
     }
-    const Vec3 area = area_vector(face(f), mesh_.positions);
-    return std::max(face_quality(face(f), mesh_.positions, area, of_surface.normalized()),
+    return std::max(by_surface,
                     face_quality(face(f), mesh_.positions, area, of_neighbors.normalized()));
   }
 
-  float lack(Index v) const {
+  /// Of the faces around a vertex; from `limit` on it need not be exact.
+  float lack(Index v, float limit) const {
     constexpr float good = 0.2f;
     float sum = 0;
     for (const Index f : around_[v]) {
-      const float bad = std::max(0.0f, good - quality(f));
+      const float bad = std::max(0.0f, good - quality(f, good));
       sum += bad * bad;
+      if (sum >= limit) break;
     }
     return sum;
   }
@@ -154,14 +161,14 @@ class Untwisting {
     Vec3& position = mesh_.positions[v];
     const Vec3 here = position;
     Vec3 best = here;
-    float least = lack(v);
+    float least = lack(v, std::numeric_limits<float>::infinity());
     for (int direction = 0; direction < 27 && least > 0; ++direction) {
       const Vec3 to(static_cast<float>(direction % 3 - 1),
                     static_cast<float>(direction / 3 % 3 - 1),
                     static_cast<float>(direction / 9 - 1));
       position = here + step * to;
       if ((position - start_[v]).norm() > farthest) continue;
-      if (const float left = lack(v); left < least) {
+      if (const float left = lack(v, least); left < least) {
         least = left;
         best = position;
       }

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <unordered_map>
 #include <vector>
 
 #include "mesh/weld.h"
+#include "util/union_find.h"
 
 namespace meshgrain {
 
@@ -22,6 +24,18 @@ SeamReport find_seams(const Mesh& mesh, std::span<const std::array<Index, 2>> bo
     return std::ranges::binary_search(edges, std::array{edge[1], edge[0]});
   }));
   return report;
+}
+
+bool has_short_loops(const Mesh& mesh, std::span<const std::array<Index, 2>> border,
+                     double length) {
+  UnionFind loops(mesh.positions.size());
+  for (const auto& [a, b] : border) loops.unite(a, b);
+  std::unordered_map<Index, double> lengths;
+  for (const auto& [a, b] : border) {
+    lengths[loops.find(a)] += (mesh.positions[b] - mesh.positions[a]).norm();
+  }
+  const auto is_short = [&](const auto& loop) { return loop.second < length; };
+  return 2 * static_cast<std::size_t>(std::ranges::count_if(lengths, is_short)) > lengths.size();
 }
 
 }  // namespace meshgrain

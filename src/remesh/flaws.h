@@ -22,46 +22,55 @@ struct LostSurface {
   }
 };
 
+/// Faces that are inverted, and pairs that pass through each other where the surface does not.
+struct FaultCounts {
+  std::size_t inverted = 0, crossings = 0;
+
+  std::size_t all() const { return inverted + crossings; }
+
+  /// No more faces are inverted, and all is less than two thirds as bad; or none is any more, and
+  /// no more pass through each other.
+  bool are_clearly_fewer_than(const FaultCounts& other) const {
+    if (inverted > other.inverted) return false;
+    if (inverted == 0 && other.inverted > 0 && crossings <= other.crossings) return true;
+    const auto badness = [](const FaultCounts& of) { return 10 * of.inverted + of.crossings; };
+    return 3 * badness(*this) < 2 * badness(other);
+  }
+};
+
+/// And where they are.
+struct Faults : FaultCounts {
+  std::vector<Index> nodes;              // of the surface, at these faces; increasing
+  std::vector<Index> nodes_of_inverted;  // those of the former alone
+};
+
 /// What faces that are made otherwise may do without.
 struct Flaws {
   double lost_faces = 0;  // if these are not little
   float flatness = 0;     // of the flattest quad, if that is nearly flat
-  std::size_t faults = 0;
+  FaultCounts faults;
   std::size_t all_faults = 0;  // with crossings where the surface crosses itself, too
 
   /// A mesh that is crumpled all over is too coarse for its surface, and others would be as well.
   bool are_hopeless(std::size_t faces) const {
-    return faults > faces / hopeless || is_crumpled(all_faults, faces);
+    return faults.all() > faces / hopeless || is_crumpled(all_faults, faces);
   }
   static constexpr std::size_t hopeless = 20;  // one in so many faces
 
-  bool any() const { return lost_faces > 0 || flatness > 0 || faults > 0; }
+  bool any() const { return lost_faces > 0 || flatness > 0 || faults.all() > 0; }
 
   bool are_no_more_than(const Flaws& other) const {
-    return lost_faces <= other.lost_faces && flatness <= other.flatness && faults <= other.faults &&
-           all_faults <= other.all_faults;
+    return lost_faces <= other.lost_faces && flatness <= other.flatness &&
+           faults.all() <= other.faults.all() && all_faults <= other.all_faults;
   }
 
-  /// None of them is more, and one is less.
+  /// None of them is more, and one is less; or faults are clearly fewer, at the price of quads that
+  /// are flat at most.
   bool are_fewer_than(const Flaws& other) const {
-    return are_no_more_than(other) &&
-           (lost_faces < other.lost_faces || flatness < other.flatness || faults < other.faults);
-  }
-};
-
-/// Faces that are inverted, and pairs that pass through each other where the surface does not.
-struct Faults {
-  std::size_t inverted = 0, crossings = 0;
-  std::vector<Index> nodes;              // of the surface, at these faces; increasing
-  std::vector<Index> nodes_of_inverted;  // those of the former alone
-
-  /// No more faces are inverted, and all is less than two thirds as bad; or none is any more, and
-  /// no more pass through each other.
-  bool are_clearly_fewer_than(const Faults& other) const {
-    if (inverted > other.inverted) return false;
-    if (inverted == 0 && other.inverted > 0 && crossings <= other.crossings) return true;
-    const auto badness = [](const Faults& of) { return 10 * of.inverted + of.crossings; };
-    return 3 * badness(*this) < 2 * badness(other);
+    if (lost_faces > other.lost_faces || all_faults > other.all_faults) return false;
+    if (faults.are_clearly_fewer_than(other.faults)) return true;
+    return are_no_more_than(other) && (lost_faces < other.lost_faces || flatness < other.flatness ||
+                                       faults.all() < other.faults.all());
   }
 };
 

@@ -136,6 +136,10 @@ class Pipeline {
   template <typename Change>
   bool change_quads(Extraction& extraction, const Change& change);
   void add_notes(const std::vector<std::string>& notes);
+  void clean_border();
+  /// Whether seams along all of the border, which is given, are mostly cracks that no face of the
+  /// size could keep.
+  bool are_cracks(std::span<const std::array<Index, 2>> border) const;
   void drop_pieces();
 
   std::size_t inverted_faces() const;

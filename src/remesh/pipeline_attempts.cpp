@@ -50,8 +50,8 @@ Flaws Pipeline::flaws(double lost_faces) {
   const std::size_t inverted = flatness > 0 ? inverted_faces() : 0;
   auto crossings = find_crossings(extraction_.mesh, context_);
   const std::size_t all = crossings.size();
-  return {lost_faces <= LostSurface::little ? 0 : lost_faces, flatness,
-          inverted + own(std::move(crossings)).size(), inverted + all};
+  const FaultCounts faults{inverted, own(std::move(crossings)).size()};
+  return {lost_faces <= LostSurface::little ? 0 : lost_faces, flatness, faults, inverted + all};
 }
 
 std::vector<std::array<Index, 2>> Pipeline::own(std::vector<std::array<Index, 2>> crossings) {
@@ -143,7 +143,7 @@ void Pipeline::recover_lost_surface(const LostSurface& lost, Flaws& left) {
     const LostSurface still_lost = lost_surface();
     if (!still_lost.is_considerably_less_than(lost)) return false;
     now = flaws(still_lost.faces);
-    return now.flatness <= left.flatness && now.faults <= left.faults;
+    return now.flatness <= left.flatness && now.faults.all() <= left.faults.all();
   };
   if (try_again(is_better)) left = now;
 }
@@ -170,14 +170,15 @@ void Pipeline::keep_singularities_around(const std::vector<Index>& nodes) {
 bool Pipeline::try_without_creases(const Flaws& before) {
   const std::size_t faces = extraction_.mesh.faces.size();
   const bool are_too_fine =
-      before.faults > 0 && target_.finished_ratio(extraction_.mesh) > 1 + target_.tolerance();
+      before.faults.all() > 0 && target_.finished_ratio(extraction_.mesh) > 1 + target_.tolerance();
   // Where there are more than two faults a face, nothing helps.
-  if (!(before.are_hopeless(faces) || are_too_fine) || before.faults > 2 * faces) return false;
+  if (!(before.are_hopeless(faces) || are_too_fine) || before.faults.all() > 2 * faces)
+    return false;
   if (!may_leave_out_creases()) return false;
   const auto on_rim = rim_vertices(surface_, context_);
   const auto is_inside = [&](Index v) { return on_rim[v] == 0; };
   if (std::ranges::none_of(features_.vertices, is_inside)) return false;
-  const auto is_better = [&] { return 2 * flaws(0).faults < before.faults; };
+  const auto is_better = [&] { return 2 * flaws(0).faults.all() < before.faults.all(); };
   const auto leave_out = [&] {
     leaves_out_creases_ = true;
     keeps_singularities_.clear();
@@ -197,10 +198,10 @@ bool Pipeline::try_without_creases(const Flaws& before) {
 }
 
 bool Pipeline::try_divided_borders(const Flaws& before) {
-  if (borders_.empty() || divides_borders_ || before.faults == 0) return false;
+  if (borders_.empty() || divides_borders_ || before.faults.all() == 0) return false;
   const auto locked = locked_between(borders_, surface_, locked_, target_.face_side(area_));
   if (locked == locked_) return false;
-  const auto is_better = [&] { return 2 * flaws(0).faults <= before.faults; };
+  const auto is_better = [&] { return 2 * flaws(0).faults.all() <= before.faults.all(); };
   const auto divide = [&] {
     divides_borders_ = true;
     find_lines();
@@ -225,7 +226,7 @@ bool Pipeline::mend_flaws() {
   const bool is_coarse = lattice_faces_ == OutputFaces::quads;
   const bool has_lost = !keeps_singularities_.empty();  // or had
   if (!left.any() || !has_lost || !is_coarse || !may_have_fine_lattice() || has_branches()) {
-    may_have_faults_ = try_other_starts(left).faults > 0;
+    may_have_faults_ = try_other_starts(left).faults.all() > 0;
     return false;
   }
   take_attempt();  // nothing of it is needed any more

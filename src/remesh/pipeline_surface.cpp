@@ -52,15 +52,31 @@ void Pipeline::clean_up(Mesh input) {
     surface_ = is_ready ? std::move(input) : triangulate(input);
     const OrientReport oriented = orient_faces(surface_, context_);
     add_notes(describe(oriented));
-    if (!is_cloud_ && oriented.may_have_border) {
-      auto border = border_edges(surface_, context_);
-      add_notes(contract_border_of(surface_, border, context_));
-      const SeamReport seams = find_seams(surface_, border);
-      add_notes(describe(seams));
-      is_seamed_ = seams.are_many();
-    }
+    if (!is_cloud_ && oriented.may_have_border) clean_border();
     drop_pieces();
   });
+}
+
+void Pipeline::clean_border() {
+  auto border = border_edges(surface_, context_);
+  add_notes(contract_border_of(surface_, border, context_));
+  const SeamReport seams = find_seams(surface_, border);
+  if (!options_.lock_borders && seams.are_all() && are_cracks(border)) {
+    const std::size_t merged = weld(surface_);
+    add_notes({fmt::format(
+        "merged {} vertices along seams: most are too short for faces of this size", merged)});
+    clean(surface_, context_);
+    orient_faces(surface_, context_);
+    return;
+  }
+  add_notes(describe(seams));
+  is_seamed_ = seams.are_many();
+}
+
+bool Pipeline::are_cracks(std::span<const std::array<Index, 2>> border) const {
+  constexpr double sides = 3;  // there and back again
+  const double side = target_.face_side(surface_area(surface_, context_));
+  return has_short_loops(surface_, border, sides * side);
 }
 
 Mesh Pipeline::seamed_surface() const {

@@ -179,12 +179,19 @@ std::size_t close_tunnels(Mesh& triangles, std::span<const Index> near, double l
                              double most) {
     constexpr int most_rounds = 8;
     std::size_t count = 0;
+    std::vector<Index> rims;
     for (int round = 0; round < most_rounds; ++round) {
       const auto tunnels = find_tunnels(mesh, kind, seeds, most, context);
       if (tunnels.empty()) break;
       close(mesh, tunnels);
       count += tunnels.size();
-      for (const Tunnel& tunnel : tunnels) longest_closed = std::max(longest_closed, tunnel.loop);
+      // Others can have become possible beside these alone.
+      rims.clear();
+      for (const Tunnel& tunnel : tunnels) {
+        longest_closed = std::max(longest_closed, tunnel.loop);
+        for (const auto& rim : tunnel.sleeve.rims) rims.insert(rims.end(), rim.begin(), rim.end());
+      }
+      seeds = rims;
     }
     return count;
   };
