@@ -57,6 +57,10 @@ struct Flaws {
   }
   static constexpr std::size_t hopeless = 20;  // one in so many faces
 
+  /// Others of a surface that passes through itself in many places do so, too, and take long.
+  bool are_inherent(std::size_t faces) const { return all_faults > faces / many; }
+  static constexpr std::size_t many = 10;  // one in so many faces
+
   bool any() const { return lost_faces > 0 || flatness > 0 || faults.all() > 0; }
 
   bool are_no_more_than(const Flaws& other) const {

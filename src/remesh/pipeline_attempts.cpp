@@ -242,7 +242,8 @@ bool Pipeline::mend_flaws() {
 }
 
 Flaws Pipeline::try_other_starts(Flaws before) {
-  if (before.are_hopeless(extraction_.mesh.faces.size())) return before;
+  const std::size_t faces = extraction_.mesh.faces.size();
+  if (before.are_hopeless(faces) || before.are_inherent(faces)) return before;
   constexpr std::uint64_t most = 2;
   for (std::uint64_t start = 1; start <= most && before.any(); ++start) {
     Flaws now;
@@ -265,6 +266,7 @@ void Pipeline::try_coarser_lattice() {
   constexpr double hopeless = 0.2;
   if (inverted_faces() == 0 || share_of_holes() > hopeless) return;
   const std::size_t before = faults();
+  if (before > extraction_.mesh.faces.size() / Flaws::many) return;
   try_again([&] { return faults() < before; }, [&] { aim_at(options_.faces); });
 }
 
