@@ -10,6 +10,7 @@
 #include "remesh/notes.h"
 #include "remesh/pipeline.h"
 #include "remesh/target.h"
+#include "remesh/try_finer_faces.h"
 #include "remesh/try_simpler_topology.h"
 #include "symmetry/remesh_symmetric.h"
 
@@ -108,7 +109,7 @@ void make_mesh(Pipeline& pipeline) {
 Made make(Mesh input, const RemeshOptions& options, const Context& context) {
   Pipeline pipeline(input, options, context);
   pipeline.clean_up(std::move(input));
-  Mesh seamed = may_be_simpler(options) ? pipeline.seamed_surface() : Mesh();
+  Mesh seamed = may_remake(options) ? pipeline.seamed_surface() : Mesh();
   prepare(pipeline);
   std::vector<std::string> notes = pipeline.report().notes;
   make_mesh(pipeline);
@@ -134,6 +135,7 @@ RemeshResult remesh_half(Mesh input, const RemeshOptions& options, const Context
 
 RemeshResult remesh_whole(Mesh input, const RemeshOptions& options, const Context& context) {
   Made made = make(std::move(input), options, context);
+  try_finer_faces(made, options, make, context);
   try_simpler_topology(made, options, make, context);
   return std::move(made.result);
 }

@@ -80,8 +80,9 @@ std::vector<std::array<Index, 2>> Pipeline::own(std::vector<std::array<Index, 2>
 Faults Pipeline::find_faults() {
   Faults faults;
   // Of many faces, to look for crossings as well takes too long.
-  const bool has_any =
-      may_have_faults_ && (has_few_faces() || least_jacobian(extraction_.mesh) <= 0);
+  constexpr std::size_t few = 100000;
+  const bool has_any = may_have_faults_ && (extraction_.mesh.faces.size() < few ||
+                                            least_jacobian(extraction_.mesh) <= 0);
   if (!has_any) return faults;
   const Faces& faces = extraction_.mesh.faces;
   const auto add = [&](Index f) {

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "mesh/weld.h"
-#include "remesh/stages.h"
 #include "tunnels/close_tunnels.h"
 
 namespace meshgrain {
@@ -34,23 +33,14 @@ class SimplerTopology {
  public:
   SimplerTopology(Made& made, const RemeshOptions& options, const Make& make,
                   const Context& context)
-      : made_(made),
-        options_(options),
-        make_(make),
-        context_(context),
-        times_(made.result.report.stages),
-        stage_(context, times_) {
-    if (options_.edge_length == 0 && options_.face_count == 0 && options_.vertex_count == 0) {
-      options_.vertex_count = made.result.mesh.positions.size();
-    }
-  }
+      : made_(made), remaking_(made, options, make, context), context_(context) {}
 
   void run() {
     Mesh seamed = std::exchange(made_.seamed, {});
     Made before = made_;
     if (!seamed.faces.empty()) join_seams(std::move(seamed), before);
     close_tunnels(before);
-    made_.result.report.stages = std::move(times_);
+    remaking_.report_times();
   }
 
  private:
@@ -58,12 +48,12 @@ class SimplerTopology {
   void join_seams(Mesh surface, Made& before) {
     // The two sides of a seam mostly cross a little: that alone is no reason to join them.
     if (before.faults.inverted == 0) return;
-    const std::size_t merged = stage_("join seams", [&] { return weld(surface); });
+    const std::size_t merged = remaking_.stage()("join seams", [&] { return weld(surface); });
     before = made_of(std::move(surface), before,
                      fmt::format("merged {} vertices along seams: faces of this size beside these "
                                  "would be inverted or pass through each other",
                                  merged));
-    keep_if_better(before);
+    remaking_.keep_if_better(before);
   }
 
   void close_tunnels(const Made& before) {
@@ -79,14 +69,14 @@ class SimplerTopology {
       Mesh surface = before.result.fields.surface;
       if (!before.has_marks) surface.marked_edges.clear();  // creases are found anew
       const double most = std::min(sides_around * before.side, longest);
-      const std::size_t closed = stage_(
+      const std::size_t closed = remaking_.stage()(
           "tunnels", [&] { return meshgrain::close_tunnels(surface, near, most, context_); });
       constexpr double considerably = 1.05;  // else it would be about the same once more
       const bool are_more =
           static_cast<double>(closed) > considerably * static_cast<double>(closed_before);
       if (!are_more) continue;
       closed_before = closed;
-      keep_if_better(made_of(
+      remaking_.keep_if_better(made_of(
           std::move(surface), before,
           fmt::format("closed {} {}: faces of this size around {} would be inverted or "
                       "pass through each other",
@@ -94,47 +84,21 @@ class SimplerTopology {
     }
   }
 
-  /// The report tells of the input as it was.
   Made made_of(Mesh surface, const Made& before, const std::string& note) {
-    Made other = make_(std::move(surface), options_, context_);
-    RemeshReport& report = other.result.report;
-    const RemeshReport& first = before.result.report;
-    report.input_vertices = first.input_vertices;
-    report.input_faces = first.input_faces;
-    // And so do the notes, but for those of the faces, which come last.
-    report.notes.erase(report.notes.begin(),
-                       report.notes.begin() + static_cast<std::ptrdiff_t>(other.notes.size()));
-    other.notes = before.notes;
-    other.notes.push_back(note);
-    report.notes.insert(report.notes.begin(), other.notes.begin(), other.notes.end());
-    times_.insert(times_.end(), report.stages.begin(), report.stages.end());
-    return other;
-  }
-
-  void keep_if_better(Made other) {
-    if (other.faults.are_clearly_fewer_than(made_.faults)) made_ = std::move(other);
+    return remaking_.made_of(std::move(surface), remaking_.options(), before, note);
   }
 
   Made& made_;
-  RemeshOptions options_;
-  const Make& make_;
+  Remaking remaking_;
   const Context& context_;
-  std::vector<StageTime> times_;
-  Stages stage_;
 };
 
 }  // namespace
 
-bool may_be_simpler(const RemeshOptions& options) {
-  return options.graph.nodes == GraphNodes::vertices && options.smoothing > 0 &&
-         options.fields == nullptr && options.guides.empty() && !options.lock_borders &&
-         !options.sizing.is_by_value();
-}
-
 void try_simpler_topology(Made& made, const RemeshOptions& options, const Make& make,
                           const Context& context) {
   const bool is_cloud = made.result.fields.surface.is_point_cloud();
-  if (is_cloud || !may_be_simpler(options) || !has_serious_faults(made)) return;
+  if (is_cloud || !may_remake(options) || !has_serious_faults(made)) return;
   SimplerTopology(made, options, make, context).run();
 }
 

@@ -1,0 +1,48 @@
+#include "remesh/remaking.h"
+
+#include <cstddef>
+#include <utility>
+
+namespace meshgrain {
+
+bool may_remake(const RemeshOptions& options) {
+  return options.graph.nodes == GraphNodes::vertices && options.smoothing > 0 &&
+         options.fields == nullptr && options.guides.empty() && !options.lock_borders &&
+         !options.sizing.is_by_value();
+}
+
+Remaking::Remaking(Made& made, const RemeshOptions& options, const Make& make,
+                   const Context& context)
+    : made_(made),
+      options_(options),
+      make_(make),
+      context_(context),
+      times_(made.result.report.stages),
+      stage_(context, times_) {
+  if (options_.edge_length == 0 && options_.face_count == 0 && options_.vertex_count == 0) {
+    options_.vertex_count = made.result.mesh.positions.size();
+  }
+}
+
+Made Remaking::made_of(Mesh surface, const RemeshOptions& options, const Made& before,
+                       const std::string& note) {
+  Made other = make_(std::move(surface), options, context_);
+  RemeshReport& report = other.result.report;
+  const RemeshReport& first = before.result.report;
+  report.input_vertices = first.input_vertices;
+  report.input_faces = first.input_faces;
+  // And so do the notes, but for those of the faces, which come last.
+  report.notes.erase(report.notes.begin(),
+                     report.notes.begin() + static_cast<std::ptrdiff_t>(other.notes.size()));
+  other.notes = before.notes;
+  other.notes.push_back(note);
+  report.notes.insert(report.notes.begin(), other.notes.begin(), other.notes.end());
+  times_.insert(times_.end(), report.stages.begin(), report.stages.end());
+  return other;
+}
+
+void Remaking::keep_if_better(Made other) {
+  if (other.faults.are_clearly_fewer_than(made_.faults)) made_ = std::move(other);
+}
+
+}  // namespace meshgrain

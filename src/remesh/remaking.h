@@ -1,0 +1,61 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "meshgrain/remesh.h"
+#include "remesh/flaws.h"
+#include "remesh/stages.h"
+
+namespace meshgrain {
+
+/// A mesh, and what was learnt while it was made.
+struct Made {
+  RemeshResult result;
+  Faults faults;
+  double side;                     // of a face, in the mean
+  std::vector<std::string> notes;  // of the input, before there were faces
+  Mesh seamed;                     // the input, if seams may be joined; else empty
+  bool has_marks;                  // besides those of creases that were found
+};
+
+using Make = std::function<Made(Mesh input, const RemeshOptions&, const Context&)>;
+
+/// Whether another surface may take the place of this one, or faces of other sizes: borders and
+/// guides that stay, and values of vertices, are those of the surface as it is.
+bool may_remake(const RemeshOptions& options);
+
+/// Others in place of a mesh that has faults.
+class Remaking {
+ public:
+  /// All that it is given must outlive it.
+  Remaking(Made& made, const RemeshOptions& options, const Make& make, const Context& context);
+
+  const Made& made() const { return made_; }
+  /// As they were given, with the number of faces or vertices that was made if none was asked for.
+  const RemeshOptions& options() const { return options_; }
+  /// For what is done in between.
+  Stages& stage() { return stage_; }
+
+  /// What there is of another surface than that of `before`, with a note of why. The report tells
+  /// of the input as it was.
+  Made made_of(Mesh surface, const RemeshOptions& options, const Made& before,
+               const std::string& note);
+
+  /// If it has clearly fewer faults.
+  void keep_if_better(Made other);
+
+  /// At the end: the report has the times of all.
+  void report_times() { made_.result.report.stages = std::move(times_); }
+
+ private:
+  Made& made_;
+  RemeshOptions options_;
+  const Make& make_;
+  const Context& context_;
+  std::vector<StageTime> times_;
+  Stages stage_;
+};
+
+}  // namespace meshgrain

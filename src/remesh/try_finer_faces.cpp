@@ -1,0 +1,77 @@
+#include "remesh/try_finer_faces.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "finish/box_cells.h"
+
+namespace meshgrain {
+namespace {
+
+/// Faces that hardly touch each other.
+bool are_hardly_any(const FaultCounts& faults) {
+  constexpr std::size_t touches = 3;
+  return faults.inverted == 0 && faults.crossings <= touches;
+}
+
+/// Whether there are so few that the features behind them are few, too.
+bool are_few(const FaultCounts& faults, std::size_t faces) {
+  constexpr std::size_t of_one_feature = 60, few = 50;  // and one in so many faces
+  return faults.all() <= std::max(of_one_feature, faces / few);
+}
+
+/// How short edges are near the faults, beside others, and how far around them, in sides of a face.
+struct Finer {
+  float length;
+  double reach;
+};
+constexpr Finer ever_more[] = {{0.5f, 0.75}, {0.25f, 1.5}};
+
+/// The surface that was remeshed, with the edge lengths that are wanted as values.
+Mesh with_lengths(const Made& made, const Finer& finer) {
+  Mesh surface = made.result.fields.surface;
+  const auto reach = static_cast<float>(finer.reach * made.side);
+  std::vector<Eigen::AlignedBox3f> near;
+  for (const Index v : made.faults.nodes) {
+    const Vec3& p = surface.positions[v];
+    near.emplace_back(p.array() - reach, p.array() + reach);
+  }
+  const BoxCells cells(near, reach / 4);
+  surface.values.assign(surface.positions.size(), 1);
+  for (std::size_t v = 0; v < surface.values.size(); ++v) {
+    if (cells.contains(surface.positions[v])) surface.values[v] = finer.length;
+  }
+  return surface;
+}
+
+}  // namespace
+
+void try_finer_faces(Made& made, const RemeshOptions& options, const Make& make,
+                     const Context& context) {
+  const Mesh& surface = made.result.fields.surface;
+  if (surface.is_point_cloud() || !may_remake(options) || !options.sizing.is_uniform() ||
+      options.edge_length > 0 || are_hardly_any(made.faults) ||
+      !are_few(made.faults, made.result.mesh.faces.size())) {
+    return;
+  }
+  Remaking remaking(made, options, make, context);
+  RemeshOptions sized = remaking.options();
+  sized.sizing.kind = Sizing::Kind::values;
+  const Made before = made;
+  for (const Finer& finer : ever_more) {
+    if (are_hardly_any(made.faults)) break;
+    Made other = remaking.made_of(
+        with_lengths(before, finer), sized, before,
+        "made faces smaller where they would be inverted or pass through each other");
+    other.result.fields.surface.values.clear();
+    // Where faces are inverted a simpler surface may serve better than a part of the way.
+    if (before.faults.inverted > 0 && !are_hardly_any(other.faults)) continue;
+    remaking.keep_if_better(std::move(other));
+  }
+  remaking.report_times();
+}
+
+}  // namespace meshgrain

@@ -1,0 +1,89 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "finish/crossings.h"
+#include "meshgrain/remesh.h"
+#include "meshgrain/shapes.h"
+#include "meshgrain/statistics.h"
+#include "meshgrain/surface.h"
+#include "same_topology.h"
+
+namespace meshgrain {
+namespace {
+
+/// Goes straight through a mesh from one triangle to another, which it takes the place of.
+void drill(Mesh& mesh, std::size_t from, std::size_t to) {
+  const auto corners = [&](std::size_t f) {
+    const auto face = std::as_const(mesh.faces)[f];
+    return std::array{face[0], face[1], face[2]};
+  };
+  const std::array a = corners(from);
+  std::array b = corners(to);
+  std::ranges::reverse(b);
+  const auto length = [&] {
+    float sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) sum += (mesh.positions[a[k]] - mesh.positions[b[k]]).norm();
+    return sum;
+  };
+  std::array best = b;
+  float least = length();
+  for (int turn = 0; turn < 2; ++turn) {
+    std::ranges::rotate(b, b.begin() + 1);
+    if (length() < least) least = length(), best = b;
+  }
+  Faces faces;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    if (f != from && f != to) faces.push_back(std::as_const(mesh.faces)[f]);
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    faces.push_back({a[k], a[next], best[next]});
+    faces.push_back({a[k], best[next], best[k]});
+  }
+  mesh.faces = std::move(faces);
+}
+
+/// The triangle of a sphere that is farthest in a direction.
+std::size_t face_towards(const Mesh& mesh, const Vec3& direction) {
+  std::size_t best = 0;
+  float most = 0;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    Vec3 middle = Vec3::Zero();
+    for (const Index v : mesh.faces[f]) middle += mesh.positions[v];
+    if (middle.dot(direction) > most) most = middle.dot(direction), best = f;
+  }
+  return best;
+}
+
+/// A bore far narrower than a face, close below the surface of a ball.
+Mesh drilled_ball() {
+  Mesh mesh = sample_shape("sphere", 0.7);
+  drill(mesh, face_towards(mesh, Vec3(1, 0, 0)), face_towards(mesh, Vec3(0.697f, 0.717f, 0)));
+  return mesh;
+}
+
+TEST(FinerFaces, ABoreNarrowerThanAFaceStaysAndNothingCrosses) {
+  const Mesh ball = drilled_ball();
+  ASSERT_EQ(mesh_statistics(ball).euler, 0);
+  RemeshOptions options;
+  options.face_count = 300;
+  const RemeshResult result = remesh(ball, options);
+  const MeshStatistics s = mesh_statistics(result.mesh);
+  made::expect_same_topology(s, mesh_statistics(ball));
+  EXPECT_EQ(s.inverted_quads, 0u);
+  EXPECT_NEAR(static_cast<double>(s.faces), 300, 3);
+  EXPECT_TRUE(find_crossings(result.mesh, Context()).empty());
+  EXPECT_TRUE(std::ranges::any_of(result.report.notes, [](const std::string& note) {
+    return note.starts_with("made faces smaller");
+  }));
+  EXPECT_EQ(result.report.input_vertices, ball.positions.size());
+  EXPECT_TRUE(result.fields.surface.values.empty());
+}
+
+}  // namespace
+}  // namespace meshgrain
