@@ -91,6 +91,17 @@ void close(Mesh& mesh, std::span<const Tunnel> tunnels) {
   }
 }
 
+/// The vertices around the lids of some tunnels.
+std::vector<Index> rims_of(std::span<const Tunnel> tunnels) {
+  std::vector<Index> vertices;
+  for (const Tunnel& tunnel : tunnels) {
+    for (const auto& rim : tunnel.sleeve.rims) {
+      vertices.insert(vertices.end(), rim.begin(), rim.end());
+    }
+  }
+  return vertices;
+}
+
 /// The loops near some vertices that are not longer than that, the shortest first.
 std::vector<Loop> find_loops(const Mesh& mesh, const VertexFaces& around,
                              std::span<const Index> near, double longest, const Context& context) {
@@ -179,19 +190,13 @@ std::size_t close_tunnels(Mesh& triangles, std::span<const Index> near, double l
                              double most) {
     constexpr int most_rounds = 8;
     std::size_t count = 0;
-    std::vector<Index> rims;
-    for (int round = 0; round < most_rounds; ++round) {
-      const auto tunnels = find_tunnels(mesh, kind, seeds, most, context);
-      if (tunnels.empty()) break;
+    std::vector<Tunnel> tunnels = find_tunnels(mesh, kind, seeds, most, context);
+    for (int round = 0; round < most_rounds && !tunnels.empty(); ++round) {
       close(mesh, tunnels);
       count += tunnels.size();
+      for (const Tunnel& tunnel : tunnels) longest_closed = std::max(longest_closed, tunnel.loop);
       // Others can have become possible beside these alone.
-      rims.clear();
-      for (const Tunnel& tunnel : tunnels) {
-        longest_closed = std::max(longest_closed, tunnel.loop);
-        for (const auto& rim : tunnel.sleeve.rims) rims.insert(rims.end(), rim.begin(), rim.end());
-      }
-      seeds = rims;
+      tunnels = find_tunnels(mesh, kind, rims_of(tunnels), most, context);
     }
     return count;
   };
