@@ -32,7 +32,6 @@ class Remaking {
   /// All that it is given must outlive it.
   Remaking(Made& made, const RemeshOptions& options, const Make& make, const Context& context);
 
-  const Made& made() const { return made_; }
   /// As they were given, with the number of faces or vertices that was made if none was asked for.
   const RemeshOptions& options() const { return options_; }
   /// For what is done in between.
