@@ -45,7 +45,7 @@ class OwnSide {
       measure(watched, many_samples);
       const std::vector<Index> vertices = vertices_of_turned(watched);
       for (const std::vector<Index>& batch : batches(vertices)) {
-        context_.for_ranges(batch.size(), 4, [&](std::size_t begin, std::size_t end) {
+        context_.for_ranges(batch.size(), 1, [&](std::size_t begin, std::size_t end) {
           for (std::size_t k = begin; k < end; ++k) improve(batch[k]);
         });
       }

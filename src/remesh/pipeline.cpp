@@ -87,6 +87,7 @@ void Pipeline::cut_surface() {
 }
 
 void Pipeline::join_cuts() {
+  inherent_crossings_.reset();
   join_again(surface_, std::exchange(cuts_, {}));
 }
 
@@ -440,7 +441,7 @@ void Pipeline::change_target(const RemeshOptions& options) {
   choose_lattice();
   size_faces();
   keeps_singularities_.clear();
-  crossings_of_surface_.reset();  // what is near to them depends on the size of a face
+  inherent_crossings_.reset();  // what is near to them depends on the size of a face
   if (left_out_creases == leaves_out_creases_ && !started_elsewhere && !was_thorough) return;
   complete_levels();
   orient();

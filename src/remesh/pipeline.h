@@ -12,7 +12,6 @@
 #include "cloud/cloud_border.h"
 #include "features/find_features.h"
 #include "features/guide_constraints.h"
-#include "finish/box_cells.h"
 #include "mesh/cut_apart.h"
 #include "mesh/frame.h"
 #include "mesh/surface_size.h"
@@ -23,6 +22,7 @@
 #include "meshgrain/remesh.h"
 #include "meshgrain/statistics.h"
 #include "remesh/flaws.h"
+#include "remesh/inherent_crossings.h"
 #include "remesh/stages.h"
 #include "remesh/target.h"
 
@@ -300,7 +300,7 @@ class Pipeline {
   bool had_marks_ = false;     // others were before
   bool is_seamed_ = false;     // much of its border
   Mesh surface_;
-  std::optional<BoxCells> crossings_of_surface_;  // once that is asked for
+  std::optional<InherentCrossings> inherent_crossings_;  // once they are asked for
   Cuts cuts_;                                     // of the surface, while it has a graph
   VertexFaces around_;                            // its vertices, once it has a graph
   SurfaceSize input_size_{};                      // of the surface before it is refined

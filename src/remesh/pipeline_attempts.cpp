@@ -56,23 +56,15 @@ Flaws Pipeline::flaws(double lost_faces) {
 
 std::vector<std::array<Index, 2>> Pipeline::own(std::vector<std::array<Index, 2>> crossings) {
   if (crossings.empty() || is_cloud_) return {};  // of a cloud it is not known
-  const auto meeting = [](const Mesh& of, const std::array<Index, 2>& pair) {
-    return face_box(of, pair[0]).intersection(face_box(of, pair[1]));
-  };
-  if (!crossings_of_surface_) {
-    const double side = target_.face_side(area_);
-    constexpr double deep = 0.01;  // sides: rounding makes for less
-    std::vector<Eigen::AlignedBox3f> boxes;
-    for (const auto& pair : find_crossings(surface_, context_)) {
-      if (penetration(surface_, pair[0], pair[1]) < deep * side) continue;
-      const Eigen::AlignedBox3f box = meeting(surface_, pair);
-      const Vec3 margin = Vec3::Constant(static_cast<float>(side));
-      boxes.emplace_back(box.min() - margin, box.max() + margin);
-    }
-    crossings_of_surface_.emplace(boxes, static_cast<float>(side));
+  if (!inherent_crossings_) {
+    inherent_crossings_.emplace(surface_, cuts_, target_.face_side(area_), context_);
   }
+  const auto node = [&](Index f) {
+    return extraction_.nodes[std::as_const(extraction_.mesh.faces)[f][0]];
+  };
   std::erase_if(crossings, [&](const auto& pair) {
-    return crossings_of_surface_->touches(meeting(extraction_.mesh, pair));
+    return inherent_crossings_->are_near(extraction_.mesh, pair) ||
+           (nodes_are_vertices_ && inherent_crossings_->do_touch(node(pair[0]), node(pair[1])));
   });
   return crossings;
 }

@@ -17,10 +17,11 @@ bool are_hardly_any(const FaultCounts& faults) {
   return faults.inverted == 0 && faults.crossings <= touches;
 }
 
-/// Whether there are so few that the features behind them are few, too.
+/// Whether there are so few that the features behind them are few, too: two handles alone may make
+/// for hundreds of crossings.
 bool are_few(const FaultCounts& faults, std::size_t faces) {
-  constexpr std::size_t of_one_feature = 60, few = 50;  // and one in so many faces
-  return faults.all() <= std::max(of_one_feature, faces / few);
+  constexpr std::size_t of_one_feature = 60;
+  return faults.all() <= std::max(of_one_feature, faces / Flaws::hopeless);
 }
 
 /// How short edges are near the faults, beside others, and how far around them, in sides of a face.
@@ -67,9 +68,11 @@ void try_finer_faces(Made& made, const RemeshOptions& options, const Make& make,
         with_lengths(before, finer), sized, before,
         "made faces smaller where they would be inverted or pass through each other");
     other.result.fields.surface.values.clear();
-    // Where faces are inverted a simpler surface may serve better than a part of the way.
-    if (before.faults.inverted > 0 && !are_hardly_any(other.faults)) continue;
-    remaking.keep_if_better(std::move(other));
+    // Sheets that lie on each other meet in more places the smaller the faces are.
+    const bool are_more = other.faults.all() > before.faults.all();
+    // Where faces stay inverted, a simpler surface may serve better than a part of the way.
+    if (other.faults.inverted == 0) remaking.keep_if_better(std::move(other));
+    if (are_more) break;
   }
   remaking.report_times();
 }
