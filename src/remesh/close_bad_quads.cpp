@@ -31,7 +31,7 @@ constexpr struct {
   std::size_t ways;
 } pieces[] = {{4, 6}, {3, 2}, {5, 2}};
 // What is tried in all, and once more for so many faces.
-constexpr std::size_t tries = 20, faces_a_try = 4000;
+constexpr std::size_t tries = 10, faces_a_try = 4000;
 
 class Closing {
  public:
