@@ -86,9 +86,9 @@ class Pipeline {
   /// Where more regularity than by default bends the grid into faults, what there is with half of
   /// the excess, or none: the first is kept that has less than half as many.
   void try_less_regular();
-  /// Where there are far more irregular vertices than the orientation field needs, what there is
-  /// with more regularity than was asked for: that is kept if it has fewer of them, and neither
-  /// more flaws nor worse shapes.
+  /// Where there are no flaws, but far more irregular vertices than the orientation field needs,
+  /// what there is with more regularity than was asked for: that is kept if it has fewer of them,
+  /// no flaws either, and no worse shapes.
   void try_more_regular();
 
   /// Pure quads: irregular vertices that cancel each other out go.
@@ -201,8 +201,7 @@ class Pipeline {
   /// None where that cannot be told.
   LostSurface lost_surface() const;
   Flaws flaws(double lost_faces);
-  /// Those of these pairs that are farther than a face from where the surface passes through
-  /// itself.
+  /// Those of these pairs that are not inherent.
   std::vector<std::array<Index, 2>> own(std::vector<std::array<Index, 2>> crossings);
   /// Limbs become thinner than they are, and are lost, where the rows around them are as many as
   /// at their ends: a lattice that has all its singularities there lets rows end.
@@ -301,9 +300,9 @@ class Pipeline {
   bool is_seamed_ = false;     // much of its border
   Mesh surface_;
   std::optional<InherentCrossings> inherent_crossings_;  // once they are asked for
-  Cuts cuts_;                                     // of the surface, while it has a graph
-  VertexFaces around_;                            // its vertices, once it has a graph
-  SurfaceSize input_size_{};                      // of the surface before it is refined
+  Cuts cuts_;                                            // of the surface, while it has a graph
+  VertexFaces around_;                                   // its vertices, once it has a graph
+  SurfaceSize input_size_{};                             // of the surface before it is refined
   Hierarchy hierarchy_;
   double area_ = 0;
   EdgeLength lengths_;

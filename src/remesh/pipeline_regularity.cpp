@@ -58,8 +58,7 @@ void Pipeline::try_more_regular() {
                        options_.fields == nullptr;
   if (!may_try || !is_needlessly_irregular()) return;
   const Flaws flaws_before = flaws(lost_surface().faces);
-  // What has flaws is seldom better with fewer rows that end, and takes long to mend: of 45 tries
-  // over parts of machines one was kept, of 160 where there were none seven were.
+  // What has flaws is seldom better with fewer rows that end, and takes long to mend.
   if (flaws_before.any()) return;
   const MeshStatistics before = mesh_statistics(extraction_.mesh);
   Attempt as_asked = take_attempt();

@@ -68,11 +68,8 @@ void try_finer_faces(Made& made, const RemeshOptions& options, const Make& make,
         with_lengths(before, finer), sized, before,
         "made faces smaller where they would be inverted or pass through each other");
     other.result.fields.surface.values.clear();
-    // Sheets that lie on each other meet in more places the smaller the faces are.
-    const bool are_more = other.faults.all() > before.faults.all();
     // Where faces stay inverted, a simpler surface may serve better than a part of the way.
     if (other.faults.inverted == 0) remaking.keep_if_better(std::move(other));
-    if (are_more) break;
   }
   remaking.report_times();
 }
