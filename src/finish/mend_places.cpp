@@ -65,7 +65,7 @@ class Mending {
   static constexpr double effort_for_a_mesh = 1500000, effort_for_a_part = 20000;
   static constexpr double effort_a_face = 60, effort_to_slide_a_face = 1500;
   // That a face takes part in without success, and one that is bad.
-  static constexpr std::size_t tries = 3, tries_to_reshape = 4;
+  static constexpr std::size_t tries = 6, tries_to_reshape = 4;
   static constexpr std::size_t most_searched = 20000;  // faces of the surface in a place
 
   /// To look at a place once. Large ones, where a mesh is crumpled, have few faces that are not
