@@ -16,6 +16,7 @@
 #include "extract/pair_odd_faces.h"
 #include "extract/polygon_map.h"
 #include "graph/pieces.h"
+#include "mesh/pieces.h"
 #include "util/union_find.h"
 
 namespace meshgrain {
@@ -36,12 +37,8 @@ std::vector<std::uint8_t> mark(const std::vector<std::array<Index, 2>>& edges,
 void drop_fragments(Extraction& extraction, const Graph& graph, const Context& context) {
   constexpr std::size_t fragment = 8;  // faces
   Mesh& mesh = extraction.mesh;
-  UnionFind output(mesh.positions.size());
+  UnionFind output = pieces_of(mesh);
   SharedUnionFind input = pieces_of(graph, context);
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    const auto face = std::as_const(mesh.faces)[f];
-    for (const Index v : face) output.unite(face[0], v);
-  }
   std::vector<std::size_t> size(mesh.positions.size(), 0), largest(graph.size(), 0);
   const auto part_of = [&](std::size_t f) { return output.find(std::as_const(mesh.faces)[f][0]); };
   const auto source_of = [&](Index part) { return input.find(extraction.nodes[part]); };

@@ -12,6 +12,7 @@
 #include "mesh/fins.h"
 #include "mesh/keep_vertices.h"
 #include "mesh/marks.h"
+#include "mesh/pieces.h"
 #include "mesh/sort_by_vertex.h"
 #include "meshgrain/surface.h"
 #include "util/collect.h"
@@ -19,7 +20,6 @@
 #include "util/hash.h"
 #include "util/sort_unique.h"
 #include "util/sum.h"
-#include "util/union_find.h"
 
 namespace meshgrain {
 namespace {
@@ -273,11 +273,7 @@ CleanReport clean(Mesh& mesh, const Context& context) {
 
 std::size_t drop_small_pieces(Mesh& mesh, double least_area) {
   if (mesh.faces.empty()) return 0;
-  UnionFind pieces(mesh.positions.size());
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    const auto face = std::as_const(mesh.faces)[f];
-    for (const Index v : face) pieces.unite(face[0], v);
-  }
+  UnionFind pieces = pieces_of(mesh);
   std::vector<double> area(mesh.positions.size(), 0);
   const auto piece_of = [&](std::size_t f) { return pieces.find(std::as_const(mesh.faces)[f][0]); };
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) area[piece_of(f)] += face_area(mesh, f);

@@ -22,7 +22,7 @@ struct LostSurface {
   }
 };
 
-/// Faces that are inverted, and pairs that pass through each other where the surface does not.
+/// Faces that are inverted, and pairs that pass through each other where that is not inherent.
 struct FaultCounts {
   std::size_t inverted = 0, crossings = 0;
 
@@ -49,7 +49,7 @@ struct Flaws {
   double lost_faces = 0;  // if these are not little
   float flatness = 0;     // of the flattest quad, if that is nearly flat
   FaultCounts faults;
-  std::size_t all_faults = 0;  // with crossings where the surface crosses itself, too
+  std::size_t all_faults = 0;  // with inherent crossings, too
 
   /// A mesh that is crumpled all over is too coarse for its surface, and others would be as well.
   bool are_hopeless(std::size_t faces) const {

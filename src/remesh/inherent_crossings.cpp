@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "finish/crossings.h"
-#include "util/union_find.h"
+#include "mesh/pieces.h"
 
 namespace meshgrain {
 namespace {
@@ -15,6 +15,8 @@ Eigen::AlignedBox3f meeting(const Mesh& of, const std::array<Index, 2>& pair) {
 Eigen::AlignedBox3f widened(const Eigen::AlignedBox3f& box, float by) {
   return {Vec3(box.min().array() - by), Vec3(box.max().array() + by)};
 }
+
+constexpr double hardly_apart = 0.05;  // sides
 
 BoxCells crossings_of(const Mesh& surface, double side, const Context& context) {
   constexpr double deep = 0.01;  // sides: rounding makes for less
@@ -33,7 +35,7 @@ InherentCrossings::InherentCrossings(const Mesh& surface, const Cuts& cuts, doub
                                      const Context& context)
     : surface_(surface),
       cuts_(cuts),
-      near_(static_cast<float>(0.05 * side)),
+      near_(static_cast<float>(hardly_apart * side)),
       crossings_(crossings_of(surface, side, context)) {}
 
 bool InherentCrossings::are_near(const Mesh& mesh, const std::array<Index, 2>& faces) const {
@@ -53,12 +55,7 @@ bool InherentCrossings::do_touch(Index v, Index w) {
 
 void InherentCrossings::find_pieces() {
   const std::size_t count = surface_.positions.size();
-  UnionFind together(count);
-  for (std::size_t f = 0; f < surface_.faces.size(); ++f) {
-    const auto face = surface_.faces[f];
-    together.unite(face[0], face[1]);
-    together.unite(face[0], face[2]);
-  }
+  UnionFind together = pieces_of(surface_);
   for (Index v = 0; v < cuts_.sources.size(); ++v) together.unite(v, cuts_.sources[v]);
   piece_of_.resize(count);
   for (Index v = 0; v < count; ++v) {

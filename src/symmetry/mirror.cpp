@@ -9,6 +9,7 @@
 
 #include "mesh/border.h"
 #include "mesh/keep_vertices.h"
+#include "mesh/pieces.h"
 #include "meshgrain/clean.h"
 #include "meshgrain/statistics.h"
 #include "meshgrain/surface.h"
@@ -55,21 +56,12 @@ void drop_ears(Mesh& mesh, const std::vector<std::uint8_t>& on_plane) {
   mesh.faces = std::move(kept);
 }
 
-/// What each vertex is connected with.
-UnionFind pieces(const Mesh& mesh) {
-  UnionFind result(mesh.positions.size());
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    for (const Index v : mesh.faces[f]) result.unite(mesh.faces[f][0], v);
-  }
-  return result;
-}
-
 /// Drops what a cut has parted from the rest of a piece and is tiny beside it: where a shape is not
 /// exactly symmetric, as on a leg that crosses the plane by a little. `whole`: pieces before the
 /// cut, of the vertices that there were.
 void drop_crumbs(Mesh& mesh, UnionFind& whole, std::size_t vertices) {
   constexpr double tiny = 1e-3;  // of the area
-  UnionFind parts = pieces(mesh);
+  UnionFind parts = pieces_of(mesh);
   std::map<Index, double> area;     // of parts
   std::map<Index, Index> source;    // of parts: the piece before
   std::map<Index, double> largest;  // of these: the area of a part
@@ -115,7 +107,7 @@ void cut_at(Mesh& mesh, const MirrorPlane& plane) {
   const auto height = heights_over(plane, mesh);
   mesh.origin[axis] += plane.offset;
   for (Vec3& p : mesh.positions) p[axis] = height(p);
-  UnionFind whole = pieces(mesh);
+  UnionFind whole = pieces_of(mesh);
   const std::size_t vertices = mesh.positions.size();
   std::map<std::pair<Index, Index>, Index> crossings;
   const auto cross = [&](Index a, Index b) {

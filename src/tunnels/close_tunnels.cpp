@@ -13,6 +13,7 @@
 
 #include "finish/crossings.h"
 #include "mesh/keep_vertices.h"
+#include "mesh/pieces.h"
 #include "mesh/vertex_faces.h"
 #include "tunnels/loop_length.h"
 #include "tunnels/loop_search.h"
@@ -165,10 +166,7 @@ std::vector<Tunnel> find_tunnels(const Mesh& mesh, TunnelSearch::Kind kind,
   const VertexFaces around = vertex_faces(mesh, context);
   SleeveCutter cutter(mesh, around);
   TunnelSearch search(mesh, around, cutter);
-  UnionFind pieces(mesh.positions.size());
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    for (const Index v : mesh.faces[f]) pieces.unite(mesh.faces[f][0], v);
-  }
+  UnionFind pieces = pieces_of(mesh);
   std::vector<Tunnel> tunnels;
   for (const Loop& loop : find_loops(mesh, around, near, longest, context)) {
     context.check();
