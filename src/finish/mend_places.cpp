@@ -11,6 +11,7 @@
 #include "finish/bad_places.h"
 #include "finish/crossings.h"
 #include "finish/face_shape.h"
+#include "finish/surface_crossings.h"
 #include "mesh/border.h"
 #include "util/sort_unique.h"
 
@@ -25,6 +26,7 @@ class Mending {
         placement_(placement),
         search_(search),
         places_(mesh, around, search, context),
+        surface_crossings_(placement.projector(), context),
         options_(options),
         context_(context) {}
 
@@ -66,7 +68,6 @@ class Mending {
   static constexpr double effort_a_face = 60, effort_to_slide_a_face = 1500;
   // That a face takes part in without success, and one that is bad.
   static constexpr std::size_t tries = 6, tries_to_reshape = 4;
-  static constexpr std::size_t most_searched = 20000;  // faces of the surface in a place
 
   /// To look at a place once. Large ones, where a mesh is crumpled, have few faces that are not
   /// compared with each other.
@@ -185,15 +186,14 @@ class Mending {
   }
 
   /// Or is too fine to tell.
-  bool surface_crosses(const BadPlace& place) const {
+  bool surface_crosses(const BadPlace& place) {
     std::vector<Index> nodes;
     Eigen::AlignedBox3f box;
     for (const LocalSearch::Place& at : place.before) {
       nodes.push_back(placement_.node(at.seed));
       box.extend(at.position);
     }
-    const auto piece = placement_.projector().cut_out(box, std::move(nodes), most_searched);
-    return !piece || !find_crossings(*piece, context_).empty();
+    return surface_crossings_.any_in(box, std::move(nodes));
   }
 
   void restore(const BadPlace& place) { search_.put(place.vertices, place.before); }
@@ -291,6 +291,7 @@ class Mending {
   Placement& placement_;
   LocalSearch& search_;
   BadPlaces places_;
+  SurfaceCrossings surface_crossings_;
   const SmoothOptions& options_;
   bool is_crumpled_ = false;
   std::size_t failed_slides_ = 0;

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <unordered_set>
 
-#include "mesh/part.h"
 #include "util/triangle.h"
 
 namespace meshgrain {
@@ -47,9 +46,9 @@ Vec3 Projector::normal(Index vertex) const {
   return length > 0 ? Vec3(sum / length) : Vec3(Vec3::Zero());
 }
 
-std::optional<Mesh> Projector::cut_out(const Eigen::AlignedBox3f& box, std::vector<Index> from,
-                                       std::size_t most) const {
-  if (surface_.is_point_cloud()) return Mesh();
+std::optional<std::vector<Index>> Projector::faces_in(const Eigen::AlignedBox3f& box,
+                                                      std::vector<Index> from,
+                                                      std::size_t most) const {
   std::unordered_set<Index> seen(from.begin(), from.end()), faces;
   while (!from.empty()) {
     if (faces.size() > most) return std::nullopt;
@@ -62,7 +61,9 @@ std::optional<Mesh> Projector::cut_out(const Eigen::AlignedBox3f& box, std::vect
       }
     }
   }
-  return part_of(surface_, std::vector<Index>(faces.begin(), faces.end())).mesh;
+  std::vector<Index> found(faces.begin(), faces.end());
+  std::sort(found.begin(), found.end());
+  return found;
 }
 
 Vec3 Projector::project(const Vec3& p, Index& seed) const {

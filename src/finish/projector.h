@@ -42,10 +42,10 @@ class Projector {
   /// The normal of the surface at a vertex.
   Vec3 normal(Index vertex) const;
 
-  /// The faces in and across a box that hang together there with one of the vertices `from`, if
-  /// there are no more than `most`; none of a point cloud.
-  std::optional<Mesh> cut_out(const Eigen::AlignedBox3f& box, std::vector<Index> from,
-                              std::size_t most) const;
+  /// The faces of a mesh in and across a box that hang together there with one of the vertices
+  /// `from`, increasing, if there are no more than `most`.
+  std::optional<std::vector<Index>> faces_in(const Eigen::AlignedBox3f& box,
+                                             std::vector<Index> from, std::size_t most) const;
 
  private:
   /// Goes on to the nearest of the neighbours in the graph, while that is nearer to p.
