@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "meshgrain/error.h"
@@ -98,6 +99,7 @@ void make_mesh(Pipeline& pipeline) {
   } while (pipeline.mend_flaws());
   pipeline.try_coarser_lattice();
   pipeline.try_less_regular();
+  if (!pipeline.is_of_use()) return;
   pipeline.untie_knots();
   pipeline.try_more_regular();
   pipeline.note_odd_borders();
@@ -106,8 +108,10 @@ void make_mesh(Pipeline& pipeline) {
   pipeline.report_fields();
 }
 
-Made make(Mesh input, const RemeshOptions& options, const Context& context) {
+Made make(Mesh input, const RemeshOptions& options, const std::optional<FaultCounts>& to_beat,
+          const Context& context) {
   Pipeline pipeline(input, options, context);
+  if (to_beat) pipeline.beat(*to_beat);
   pipeline.clean_up(std::move(input));
   Mesh seamed = may_remake(options) ? pipeline.seamed_surface() : Mesh();
   prepare(pipeline);
@@ -134,7 +138,7 @@ RemeshResult remesh_half(Mesh input, const RemeshOptions& options, const Context
 }
 
 RemeshResult remesh_whole(Mesh input, const RemeshOptions& options, const Context& context) {
-  Made made = make(std::move(input), options, context);
+  Made made = make(std::move(input), options, std::nullopt, context);
   try_finer_faces(made, options, make, context);
   try_simpler_topology(made, options, make, context);
   return std::move(made.result);

@@ -33,9 +33,14 @@ struct FaultCounts {
   bool are_clearly_fewer_than(const FaultCounts& other) const {
     if (inverted > other.inverted) return false;
     if (inverted == 0 && other.inverted > 0 && crossings <= other.crossings) return true;
-    const auto badness = [](const FaultCounts& of) { return 10 * of.inverted + of.crossings; };
-    return 3 * badness(*this) < 2 * badness(other);
+    return 3 * badness() < 2 * other.badness();
   }
+
+  /// So many more that what is tried to get rid of some will hardly make them fewer.
+  bool are_far_more_than(const FaultCounts& other) const { return badness() > 2 * other.badness(); }
+
+ private:
+  std::size_t badness() const { return 10 * inverted + crossings; }
 };
 
 /// And where they are.

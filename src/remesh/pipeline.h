@@ -35,6 +35,9 @@ class Pipeline {
  public:
   Pipeline(const Mesh& input, const RemeshOptions& options, const Context& context);
 
+  /// The mesh is of use only if it has fewer faults than these.
+  void beat(const FaultCounts& faults) { to_beat_ = faults; }
+
   /// A clean surface of triangles (or points), about one unit large.
   void clean_up(Mesh input);
   /// A copy of that, in input units, if much of its border is seams and it is not too large; else
@@ -86,6 +89,9 @@ class Pipeline {
   /// Where more regularity than by default bends the grid into faults, what there is with half of
   /// the excess, or none: the first is kept that has less than half as many.
   void try_less_regular();
+  /// Whether there are clearly fewer faults than there must be, see beat(): what is left to do does
+  /// not make them fewer.
+  bool is_of_use();
   /// Where there are no flaws, but far more irregular vertices than the orientation field needs,
   /// what there is with more regularity than was asked for: that is kept if it has fewer of them,
   /// no flaws either, and no worse shapes.
@@ -225,6 +231,10 @@ class Pipeline {
   Flaws try_other_starts(Flaws before);
   /// Irregular vertices may be the price: not for those who want fewer of them than by default.
   bool may_be_irregular() const;
+  /// Whether the mesh can still be of use, see beat().
+  bool may_be_of_use(const FaultCounts& faults) const {
+    return !to_beat_ || !faults.are_far_more_than(*to_beat_);
+  }
   /// Whether what is wrong with the faces is to be seen, and other ones would not take too long.
   bool may_make_others() const;
   FeatureOptions feature_options() const;
@@ -320,8 +330,9 @@ class Pipeline {
   FeatureConstraints constraints_;
   std::vector<std::uint8_t> keeps_singularities_;  // the lattice; see ExtractOptions
   Extraction extraction_;
-  bool is_split_ = false;        // into the quads that are written
-  bool may_have_faults_ = true;  // what is done after mend_flaws() adds none
+  bool is_split_ = false;               // into the quads that are written
+  bool may_have_faults_ = true;         // what is done after mend_flaws() adds none
+  std::optional<FaultCounts> to_beat_;  // see beat()
 };
 
 }  // namespace meshgrain

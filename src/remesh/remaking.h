@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,9 @@ struct Made {
   bool has_marks;                  // besides those of creases that were found
 };
 
-using Make = std::function<Made(Mesh input, const RemeshOptions&, const Context&)>;
+/// Makes a mesh that is of use only if it has fewer faults than these, if any are given.
+using Make = std::function<Made(Mesh input, const RemeshOptions&,
+                                const std::optional<FaultCounts>& to_beat, const Context&)>;
 
 /// Whether another surface may take the place of this one, or faces of other sizes: borders and
 /// guides that stay, and values of vertices, are those of the surface as it is.
