@@ -61,7 +61,7 @@ std::vector<BendPatch> ring_patches(const Hierarchy& hierarchy, std::size_t leve
 
   const BendPatches patches(hierarchy, surface, around, creases, context);
   std::vector<BendPatch> own(count), sums(count);
-  constexpr std::size_t grain = 512;
+  constexpr std::size_t grain = 64;  // patches are large, nodes of a coarse level few
   context.for_ranges(count, grain, [&](std::size_t begin, std::size_t end) {
     context.check();
     for (auto i = static_cast<Index>(begin); i < end; ++i) {
