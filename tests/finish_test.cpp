@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -380,19 +381,56 @@ Index nearest(const Mesh& surface, const Vec3& p) {
 
 /// A grid over a plane, of which some vertices lie where they turn quads in; those of the border,
 /// or at a corner, must stay there.
-TEST(Finish, TwistedQuadsGoOffTheSurface) {
-  constexpr Index n = 7;
+/// n by n vertices at the integers of a plane, the first coordinate first.
+Extraction integer_grid(Index n) {
   Extraction grid;
-  const auto at = [](Index x, Index y) { return y * n + x; };
   for (Index y = 0; y < n; ++y) {
     for (Index x = 0; x < n; ++x) {
+      const Index v = y * n + x;
       grid.mesh.positions.push_back(Vec3(static_cast<float>(x), static_cast<float>(y), 0));
-      grid.nodes.push_back(at(x, y));
-      if (x > 0 && y > 0) {
-        grid.mesh.faces.push_back({at(x - 1, y - 1), at(x, y - 1), at(x, y), at(x - 1, y)});
-      }
+      grid.nodes.push_back(v);
+      if (x > 0 && y > 0) grid.mesh.faces.push_back({v - n - 1, v - n, v, v - 1});
     }
   }
+  return grid;
+}
+
+TEST(Finish, CornersOfTwistedQuadsMoveIfNothingElseCan) {
+  constexpr Index n = 7, middle = n * n / 2;
+  const std::vector<Vec3> normals(n * n, Vec3::UnitZ());
+  Extraction grid = integer_grid(n);
+  grid.mesh.positions[middle] += Vec3(1.2f, 0.1f, 0);
+  grid.corners.resize(n * n);
+  std::iota(grid.corners.begin(), grid.corners.end(), Index{0});
+  const Extraction before = grid;
+  ASSERT_GT(mesh_statistics(grid.mesh).inverted_quads, 0u);
+  untwist(grid, normals, Context());
+  EXPECT_EQ(mesh_statistics(grid.mesh).inverted_quads, 0u);
+  for (Index v = 0; v < n * n; ++v) {
+    const bool on_border = v < n || v >= n * (n - 1) || v % n == 0 || v % n == n - 1;
+    if (on_border) {
+      EXPECT_EQ(grid.mesh.positions[v], before.mesh.positions[v]) << v;
+    }
+  }
+}
+
+TEST(Finish, WhatIsTurnedAroundInItselfComesUntwisted) {
+  constexpr Index n = 13, half = n / 2, reach = 2;
+  const std::vector<Vec3> normals(n * n, Vec3::UnitZ());
+  Extraction grid = integer_grid(n);
+  const Vec3 middle(half, half, 0);
+  for (Vec3& p : grid.mesh.positions) {
+    if ((p - middle).cwiseAbs().maxCoeff() <= reach) p = 2 * middle - p;  // by half a turn
+  }
+  ASSERT_GT(mesh_statistics(grid.mesh).inverted_quads, 8u);
+  untwist(grid, normals, Context());
+  EXPECT_EQ(mesh_statistics(grid.mesh).inverted_quads, 0u);
+}
+
+TEST(Finish, TwistedQuadsGoOffTheSurface) {
+  constexpr Index n = 7;
+  const auto at = [](Index x, Index y) { return y * n + x; };
+  Extraction grid = integer_grid(n);
   const std::vector<Vec3> normals(n * n, Vec3::UnitZ());
   const Extraction regular = grid;
   untwist(grid, normals, Context());

@@ -35,7 +35,8 @@ class Untwisting {
     const double effort = is_crumpled(crossings, faces) ? effort_if_crumpled : 1;
     tries_left_ = static_cast<std::size_t>(
         effort * static_cast<double>(tries_for_a_mesh + tries_a_face * faces));
-    for (const std::size_t price : prices) {
+    for (const Price& price : ever_dearer) {
+      good_ = price.good;
       for (const int rings : {2, 3, 5}) {
         // A mesh with more of them is too coarse for its surface: no need to try for minutes.
         const std::size_t most = 50 + faces / 100;
@@ -48,18 +49,27 @@ class Untwisting {
   }
 
  private:
-  /// How many more crossings may come of each quad that is mended.
-  static constexpr std::size_t prices[] = {0, 10, 1000};
+  /// What a vertex is held by.
+  enum Stay : std::uint8_t { nowhere, on_line, at_corner, on_border };
+
+  struct Price {
+    Stay leaves;            // who may move: those that no more than this holds
+    std::size_t crossings;  // how many more may come of each quad that is mended
+    float good;             // what the faces around it should be worth
+    bool is_relaxed;        // whether vertices start amid their neighbours
+  };
+  static constexpr Price ever_dearer[] = {
+      {nowhere, 0, 0.2f, false},    {on_line, 10, 0.2f, false},      {on_line, 1000, 0.2f, false},
+      {nowhere, 1000, 0.03f, true}, {at_corner, 1000, 0.03f, false}, {at_corner, 1000, 0.03f, true},
+  };
   /// Of vertices: twice as many as were ever needed to untwist all, which takes seconds.
   static constexpr std::size_t tries_for_a_mesh = 300000, tries_a_face = 10;
-
-  enum Stay : std::uint8_t { nowhere, on_line, always };
 
   void hold() {
     stays_.assign(mesh_.positions.size(), nowhere);
     for (const LineEdge& edge : extraction_.line_edges) stays_[edge.a] = stays_[edge.b] = on_line;
-    for (const auto& [a, b] : border_edges(mesh_, context_)) stays_[a] = stays_[b] = always;
-    for (const Index v : extraction_.corners) stays_[v] = always;
+    for (const Index v : extraction_.corners) stays_[v] = at_corner;
+    for (const auto& [a, b] : border_edges(mesh_, context_)) stays_[a] = stays_[b] = on_border;
   }
 
   std::span<const Index> face(Index f) const { return std::as_const(mesh_.faces)[f]; }
@@ -92,10 +102,9 @@ class Untwisting {
 
   /// Of the faces around a vertex; from `limit` on it need not be exact.
   float lack(Index v, float limit) const {
-    constexpr float good = 0.2f;
     float sum = 0;
     for (const Index f : around_[v]) {
-      const float bad = std::max(0.0f, good - quality(f, good));
+      const float bad = std::max(0.0f, good_ - quality(f, good_));
       sum += bad * bad;
       if (sum >= limit) break;
     }
@@ -109,14 +118,13 @@ class Untwisting {
     float edge = 0;  // mean length
   };
 
-  Place around(Index f, int rings, std::size_t price) const {
+  Place around(Index f, int rings, const Price& price) const {
     Place place;
     place.faces = with_rings(mesh_, around_, {f}, rings);
-    const Stay loosest = price > 0 ? on_line : nowhere;
     place.edge = mean_edge(mesh_, place.faces);
     for (const Index v : vertices_of(mesh_, place.faces)) {
       const bool is_inside = std::ranges::includes(place.faces, around_[v]);
-      if (is_inside && stays_[v] <= loosest) place.vertices.push_back(v);
+      if (is_inside && stays_[v] <= price.leaves) place.vertices.push_back(v);
     }
     for (const Index v : place.vertices) place.before.push_back(mesh_.positions[v]);
     return place;
@@ -127,20 +135,41 @@ class Untwisting {
         std::ranges::count_if(place.faces, [&](Index f) { return is_twisted(f); }));
   }
 
-  void mend(Index f, int rings, std::size_t price) {
+  void mend(Index f, int rings, const Price& price) {
     context_.check();
     if (tries_left_ == 0 || !is_twisted(f)) return;
     const Place place = around(f, rings, price);
     const std::size_t crossings = count_crossings_of(mesh_, place.faces, context_);
     const std::size_t twisted = count_twisted(place);
+    if (price.is_relaxed) relax(place);
     move(place);
     const std::size_t left = count_twisted(place);
-    if (left < twisted &&
-        count_crossings_of(mesh_, place.faces, context_) <= crossings + price * (twisted - left)) {
+    if (left < twisted && count_crossings_of(mesh_, place.faces, context_) <=
+                              crossings + price.crossings * (twisted - left)) {
       return;
     }
     for (std::size_t k = 0; k < place.vertices.size(); ++k) {
       mesh_.positions[place.vertices[k]] = place.before[k];
+    }
+  }
+
+  /// Each vertex to the mean of its neighbours, again and again: what is folded over unfolds.
+  void relax(const Place& place) {
+    constexpr int sweeps = 20;
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+      for (const Index v : place.vertices) {
+        Vec3 sum = Vec3::Zero();
+        float count = 0;
+        for (const Index f : around_[v]) {
+          const auto corners = face(f);
+          const std::size_t n = corners.size(), k = corner_of(corners, v);
+          sum += mesh_.positions[corners[(k + 1) % n]] + mesh_.positions[corners[(k + n - 1) % n]];
+          count += 2;
+        }
+        const Vec3 way = sum / count - start_[v];
+        mesh_.positions[v] =
+            start_[v] + way * std::min(1.0f, place.edge / std::max(way.norm(), 1e-30f));
+      }
     }
   }
 
@@ -184,6 +213,7 @@ class Untwisting {
   VertexFaces around_;
   std::vector<Vec3> start_;  // positions, before all
   std::vector<Stay> stays_;
+  float good_ = 0;  // see Price
   std::size_t tries_left_ = 0;
 };
 
