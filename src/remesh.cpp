@@ -114,6 +114,8 @@ Made make(Mesh input, const RemeshOptions& options, const std::optional<FaultCou
   if (to_beat) pipeline.beat(*to_beat);
   pipeline.clean_up(std::move(input));
   Mesh seamed = may_remake(options) ? pipeline.seamed_surface() : Mesh();
+  // Where faces beside seams are bad, it is better to join these than to bend them.
+  if (!seamed.faces.empty()) pipeline.keep_border();
   prepare(pipeline);
   std::vector<std::string> notes = pipeline.report().notes;
   make_mesh(pipeline);
@@ -128,9 +130,10 @@ Made make(Mesh input, const RemeshOptions& options, const std::optional<FaultCou
           has_marks};
 }
 
-/// One half of a mesh, whose tunnels must be those of the other.
+/// One half of a mesh, whose tunnels must be those of the other, and its border where they meet.
 RemeshResult remesh_half(Mesh input, const RemeshOptions& options, const Context& context) {
   Pipeline pipeline(input, options, context);
+  pipeline.keep_border();
   pipeline.clean_up(std::move(input));
   prepare(pipeline);
   make_mesh(pipeline);

@@ -381,10 +381,10 @@ Index nearest(const Mesh& surface, const Vec3& p) {
 
 /// A grid over a plane, of which some vertices lie where they turn quads in; those of the border,
 /// or at a corner, must stay there.
-/// n by n vertices at the integers of a plane, the first coordinate first.
-Extraction integer_grid(Index n) {
+/// Vertices at the integers of a plane, the first coordinate first.
+Extraction integer_grid(Index n, Index rows) {
   Extraction grid;
-  for (Index y = 0; y < n; ++y) {
+  for (Index y = 0; y < rows; ++y) {
     for (Index x = 0; x < n; ++x) {
       const Index v = y * n + x;
       grid.mesh.positions.push_back(Vec3(static_cast<float>(x), static_cast<float>(y), 0));
@@ -398,13 +398,13 @@ Extraction integer_grid(Index n) {
 TEST(Finish, CornersOfTwistedQuadsMoveIfNothingElseCan) {
   constexpr Index n = 7, middle = n * n / 2;
   const std::vector<Vec3> normals(n * n, Vec3::UnitZ());
-  Extraction grid = integer_grid(n);
+  Extraction grid = integer_grid(n, n);
   grid.mesh.positions[middle] += Vec3(1.2f, 0.1f, 0);
   grid.corners.resize(n * n);
   std::iota(grid.corners.begin(), grid.corners.end(), Index{0});
   const Extraction before = grid;
   ASSERT_GT(mesh_statistics(grid.mesh).inverted_quads, 0u);
-  untwist(grid, normals, Context());
+  untwist(grid, normals, true, Context());
   EXPECT_EQ(mesh_statistics(grid.mesh).inverted_quads, 0u);
   for (Index v = 0; v < n * n; ++v) {
     const bool on_border = v < n || v >= n * (n - 1) || v % n == 0 || v % n == n - 1;
@@ -414,32 +414,45 @@ TEST(Finish, CornersOfTwistedQuadsMoveIfNothingElseCan) {
   }
 }
 
+TEST(Finish, BordersOfTwistedQuadsMoveIfTheyNeedNotStay) {
+  constexpr Index n = 12, middle = 5;
+  const std::vector<Vec3> normals(2 * n, Vec3::UnitZ());
+  Extraction strip = integer_grid(n, 2);
+  strip.mesh.positions[middle] += Vec3(1.3f, 0, 0);  // over the next one along the border
+  const Extraction before = strip;
+  ASSERT_GT(mesh_statistics(strip.mesh).inverted_quads, 0u);
+  untwist(strip, normals, true, Context());
+  EXPECT_EQ(strip.mesh.positions, before.mesh.positions);
+  untwist(strip, normals, false, Context());
+  EXPECT_EQ(mesh_statistics(strip.mesh).inverted_quads, 0u);
+}
+
 TEST(Finish, WhatIsTurnedAroundInItselfComesUntwisted) {
   constexpr Index n = 13, half = n / 2, reach = 2;
   const std::vector<Vec3> normals(n * n, Vec3::UnitZ());
-  Extraction grid = integer_grid(n);
+  Extraction grid = integer_grid(n, n);
   const Vec3 middle(half, half, 0);
   for (Vec3& p : grid.mesh.positions) {
     if ((p - middle).cwiseAbs().maxCoeff() <= reach) p = 2 * middle - p;  // by half a turn
   }
   ASSERT_GT(mesh_statistics(grid.mesh).inverted_quads, 8u);
-  untwist(grid, normals, Context());
+  untwist(grid, normals, true, Context());
   EXPECT_EQ(mesh_statistics(grid.mesh).inverted_quads, 0u);
 }
 
 TEST(Finish, TwistedQuadsGoOffTheSurface) {
   constexpr Index n = 7;
   const auto at = [](Index x, Index y) { return y * n + x; };
-  Extraction grid = integer_grid(n);
+  Extraction grid = integer_grid(n, n);
   const std::vector<Vec3> normals(n * n, Vec3::UnitZ());
   const Extraction regular = grid;
-  untwist(grid, normals, Context());
+  untwist(grid, normals, true, Context());
   EXPECT_EQ(grid.mesh.positions, regular.mesh.positions);
 
   Extraction straight = grid;  // a corner at (3, 3) that rounding would turn in
   straight.mesh.positions[at(3, 3)] -= Vec3(0.499999f, 0.499999f, 0);
   ASSERT_NEAR(mesh_statistics(straight.mesh).jacobian_min, 0, 1e-5);
-  untwist(straight, normals, Context());
+  untwist(straight, normals, true, Context());
   EXPECT_GT(mesh_statistics(straight.mesh).jacobian_min, 1e-3);
 
   grid.mesh.positions[at(3, 3)] += Vec3(1.1f, 0.2f, 0);
@@ -447,7 +460,7 @@ TEST(Finish, TwistedQuadsGoOffTheSurface) {
   grid.corners = {at(2, 1)};
   const Extraction before = grid;
   ASSERT_GT(mesh_statistics(grid.mesh).inverted_quads, 0u);
-  untwist(grid, normals, Context());
+  untwist(grid, normals, true, Context());
   EXPECT_EQ(mesh_statistics(grid.mesh).inverted_quads, 0u);
   EXPECT_TRUE(find_crossings(grid.mesh, Context()).empty());
   EXPECT_EQ(grid.mesh.positions[at(2, 1)], before.mesh.positions[at(2, 1)]);

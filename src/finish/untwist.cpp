@@ -16,10 +16,12 @@ namespace {
 
 class Untwisting {
  public:
-  Untwisting(Extraction& extraction, const std::vector<Vec3>& node_normals, const Context& context)
+  Untwisting(Extraction& extraction, const std::vector<Vec3>& node_normals, bool border_stays,
+             const Context& context)
       : extraction_(extraction),
         mesh_(extraction.mesh),
         node_normals_(node_normals),
+        border_stays_(border_stays),
         context_(context) {}
 
   void run() {
@@ -36,6 +38,7 @@ class Untwisting {
     tries_left_ = static_cast<std::size_t>(
         effort * static_cast<double>(tries_for_a_mesh + tries_a_face * faces));
     for (const Price& price : ever_dearer) {
+      if (price.leaves == on_border && border_stays_) continue;
       good_ = price.good;
       for (const int rings : {2, 3, 5}) {
         // A mesh with more of them is too coarse for its surface: no need to try for minutes.
@@ -59,8 +62,10 @@ class Untwisting {
     bool is_relaxed;        // whether vertices start amid their neighbours
   };
   static constexpr Price ever_dearer[] = {
-      {nowhere, 0, 0.2f, false},    {on_line, 10, 0.2f, false},      {on_line, 1000, 0.2f, false},
-      {nowhere, 1000, 0.03f, true}, {at_corner, 1000, 0.03f, false}, {at_corner, 1000, 0.03f, true},
+      {nowhere, 0, 0.2f, false},       {on_line, 10, 0.2f, false},
+      {on_line, 1000, 0.2f, false},    {nowhere, 1000, 0.03f, true},
+      {at_corner, 1000, 0.03f, false}, {at_corner, 1000, 0.03f, true},
+      {on_border, 1000, 0.03f, false},
   };
   /// Of vertices: twice as many as were ever needed to untwist all, which takes seconds.
   static constexpr std::size_t tries_for_a_mesh = 300000, tries_a_face = 10;
@@ -209,6 +214,7 @@ class Untwisting {
   const Extraction& extraction_;
   Mesh& mesh_;
   const std::vector<Vec3>& node_normals_;
+  const bool border_stays_;
   const Context& context_;
   VertexFaces around_;
   std::vector<Vec3> start_;  // positions, before all
@@ -219,9 +225,9 @@ class Untwisting {
 
 }  // namespace
 
-void untwist(Extraction& extraction, const std::vector<Vec3>& node_normals,
+void untwist(Extraction& extraction, const std::vector<Vec3>& node_normals, bool border_stays,
              const Context& context) {
-  Untwisting(extraction, node_normals, context).run();
+  Untwisting(extraction, node_normals, border_stays, context).run();
 }
 
 }  // namespace meshgrain

@@ -38,6 +38,9 @@ class Pipeline {
   /// The mesh is of use only if it has fewer faults than these.
   void beat(const FaultCounts& faults) { to_beat_ = faults; }
 
+  /// The border is no price for valid faces.
+  void keep_border() { keeps_border_ = true; }
+
   /// A clean surface of triangles (or points), about one unit large.
   void clean_up(Mesh input);
   /// A copy of that, in input units, if much of its border is seams and it is not too large; else
@@ -333,6 +336,7 @@ class Pipeline {
   bool is_split_ = false;               // into the quads that are written
   bool may_have_faults_ = true;         // what is done after mend_flaws() adds none
   std::optional<FaultCounts> to_beat_;  // see beat()
+  bool keeps_border_ = false;
 };
 
 }  // namespace meshgrain

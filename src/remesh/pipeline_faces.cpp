@@ -301,7 +301,8 @@ void Pipeline::finish_borders() {
 
 void Pipeline::untwist_faces() {
   if (options_.smoothing == 0 || posy_of(options_.faces) != 4) return;
-  stage_("smoothing", [&] { untwist(extraction_, graph().normals, context_); });
+  const bool border_stays = keeps_border_ || !borders_.empty();
+  stage_("smoothing", [&] { untwist(extraction_, graph().normals, border_stays, context_); });
 }
 
 void Pipeline::untie_knots() {
