@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -379,8 +380,6 @@ Index nearest(const Mesh& surface, const Vec3& p) {
                             surface.positions.begin());
 }
 
-/// A grid over a plane, of which some vertices lie where they turn quads in; those of the border,
-/// or at a corner, must stay there.
 /// Vertices at the integers of a plane, the first coordinate first.
 Extraction integer_grid(Index n, Index rows) {
   Extraction grid;
@@ -440,6 +439,30 @@ TEST(Finish, WhatIsTurnedAroundInItselfComesUntwisted) {
   EXPECT_EQ(mesh_statistics(grid.mesh).inverted_quads, 0u);
 }
 
+/// A few of these come untwisted only from where vertices lie amid their neighbours.
+TEST(Finish, TangledVerticesComeUntwisted) {
+  constexpr Index n = 17, half = n / 2, reach = 2;
+  constexpr float farthest = 1.2f;  // on each axis
+  const std::vector<Vec3> normals(n * n, Vec3::UnitZ());
+  const Vec3 middle(half, half, 0);
+  std::mt19937 random;
+  const auto offset = [&] {
+    return farthest * (2 * static_cast<float>(random()) / static_cast<float>(random.max()) - 1);
+  };
+  for (int time = 0; time < 100; ++time) {
+    Extraction grid = integer_grid(n, n);
+    for (Vec3& p : grid.mesh.positions) {
+      if ((p - middle).cwiseAbs().maxCoeff() > reach) continue;
+      for (float& coordinate : p) coordinate += offset();
+    }
+    ASSERT_GT(mesh_statistics(grid.mesh).inverted_quads, 0u) << time;
+    untwist(grid, normals, true, Context());
+    EXPECT_EQ(mesh_statistics(grid.mesh).inverted_quads, 0u) << time;
+  }
+}
+
+/// Of a grid over a plane some vertices lie where they turn quads in; those of the border, or at a
+/// corner, must stay there.
 TEST(Finish, TwistedQuadsGoOffTheSurface) {
   constexpr Index n = 7;
   const auto at = [](Index x, Index y) { return y * n + x; };

@@ -13,6 +13,7 @@
 #include "finish/face_shape.h"
 #include "finish/surface_crossings.h"
 #include "mesh/border.h"
+#include "util/shortened.h"
 #include "util/sort_unique.h"
 
 namespace meshgrain {
@@ -278,9 +279,7 @@ class Mending {
         const auto& [start, seed] = place.before[where[i]];
         const Vec3 towards =
             0.5f * (mesh_.positions[leaving[i]] + search_.mean_neighbor(leaving[i]));
-        const Vec3 moved = towards - start;
-        next.push_back(
-            {start + moved * std::min(1.0f, farthest / std::max(moved.norm(), 1e-30f)), seed});
+        next.push_back({start + shortened(towards - start, farthest), seed});
       }
       search_.put(leaving, next);
     }

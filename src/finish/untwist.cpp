@@ -10,6 +10,7 @@
 #include "mesh/border.h"
 #include "mesh/vertex_faces.h"
 #include "util/indices.h"
+#include "util/shortened.h"
 
 namespace meshgrain {
 namespace {
@@ -171,9 +172,7 @@ class Untwisting {
           sum += mesh_.positions[corners[(k + 1) % n]] + mesh_.positions[corners[(k + n - 1) % n]];
           count += 2;
         }
-        const Vec3 way = sum / count - start_[v];
-        mesh_.positions[v] =
-            start_[v] + way * std::min(1.0f, place.edge / std::max(way.norm(), 1e-30f));
+        mesh_.positions[v] = start_[v] + shortened(sum / count - start_[v], place.edge);
       }
     }
   }

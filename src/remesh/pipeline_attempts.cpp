@@ -259,14 +259,13 @@ void Pipeline::try_coarser_lattice() {
   if (lattice_faces_ == options_.faces || has_given_positions(options_)) return;
   constexpr double hopeless = 0.2;
   if (inverted_faces() == 0 || share_of_holes() > hopeless) return;
-  if (!may_be_of_use(flaws(0).faults)) return;
-  const std::size_t before = faults();
-  if (before > extraction_.mesh.faces.size() / Flaws::many) return;
-  try_again([&] { return faults() < before; }, [&] { aim_at(options_.faces); });
+  const Flaws before = flaws(0);
+  if (!may_be_of_use(before.faults) || before.are_inherent(extraction_.mesh.faces.size())) return;
+  try_again([&] { return faults() < before.all_faults; }, [&] { aim_at(options_.faces); });
 }
 
 bool Pipeline::is_of_use() {
-  return !to_beat_ || flaws(0).faults.are_clearly_fewer_than(*to_beat_);
+  return !to_beat_ || find_faults().are_clearly_fewer_than(*to_beat_);
 }
 
 bool Pipeline::make_faces_again() {
