@@ -22,9 +22,12 @@ double full_angle(Index v, std::span<const LatticePiece> pieces) {
 
 }  // namespace
 
-double flaws(std::span<const LatticePiece> pieces) {
+double flaws(std::span<const LatticePiece> pieces, double limit) {
   double sum = 0;
-  for (const LatticePiece& piece : pieces) sum += piece.lattice.flaw();
+  for (const LatticePiece& piece : pieces) {
+    sum += piece.lattice.flaw();
+    if (sum > limit) break;
+  }
   return sum;
 }
 
@@ -45,6 +48,14 @@ std::array<LatticePiece, 2> LatticePieces::swung(Index h) const {
   result[0].lattice.around[0] = reversed(back, lattice_.posy);
   result[1].lattice.around[0] = back;
   return result;
+}
+
+LatticePiece LatticePieces::shifted(LatticePiece piece, const std::array<int, 2>& t) const {
+  auto& [away, beyond, back] = piece.lattice.around;
+  const auto returned = rotate_jump(t, lattice_.posy - back.rotation, lattice_.posy);
+  away.t = {away.t[0] - t[0], away.t[1] - t[1]};
+  back.t = {back.t[0] + returned[0], back.t[1] + returned[1]};
+  return piece;
 }
 
 void LatticePieces::collapsed(Index h, std::vector<LatticePiece>& pieces) const {

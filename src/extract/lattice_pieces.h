@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -15,7 +16,9 @@ struct LatticePiece {
   LatticeTriangle lattice;
 };
 
-double flaws(std::span<const LatticePiece> pieces);
+/// Of all of them, or at least what is more than `limit`.
+double flaws(std::span<const LatticePiece> pieces,
+             double limit = std::numeric_limits<double>::infinity());
 
 /// What changes of a lattice mesh would make of its triangles, before they are made.
 class LatticePieces {
@@ -47,6 +50,9 @@ class LatticePieces {
 
   /// The triangles left and right of h once it has that jump.
   std::array<LatticePiece, 2> swung(Index h) const;
+
+  /// What LatticeMesh::shift(v, t) makes of a triangle that is given from its corner v on.
+  LatticePiece shifted(LatticePiece piece, const std::array<int, 2>& t) const;
 
   /// The triangles around the target of h once that is at h's origin.
   void collapsed(Index h, std::vector<LatticePiece>& pieces) const;

@@ -320,10 +320,13 @@ class LatticeRepair {
     return folded;
   }
 
-  /// How far the edges around a vertex are from their real length, squared.
-  double misfit(Index v) const {
+  /// How far the edges around a vertex are from their real length once it is shifted, squared.
+  double misfit(Index v, const std::array<int, 2>& shift) const {
     double sum = 0;
-    lattice_.for_each_leaving(v, [&](Index h) { sum += lattice_.misfit(h, lattice_.jump(h).t); });
+    lattice_.for_each_leaving(v, [&](Index h) {
+      const auto t = lattice_.jump(h).t;
+      sum += lattice_.misfit(h, {t[0] - shift[0], t[1] - shift[1]});
+    });
     return sum;
   }
 
@@ -335,17 +338,16 @@ class LatticeRepair {
       if (map_.leaving(v) == no_index || shift_refused_.still(v, *this) || is_sound(v)) continue;
       constexpr double against_stretching = 0.1;
       const double enough = flaws(before_) - least_gain;
-      double least = enough + against_stretching * misfit(v);
+      double least = enough + against_stretching * misfit(v, {0, 0});
       std::array<int, 2> best{0, 0};
       constexpr int reach = 2;
       for (int x = -reach; x <= reach; ++x) {
         for (int y = -reach; y <= reach; ++y) {
-          if (lattice_.shift_spoils_lines(v, {x, y})) continue;
-          lattice_.shift(v, {x, y});
-          star(v, after_);
-          const double left = flaws(after_);
-          const double cost = left > enough ? least : left + against_stretching * misfit(v);
-          lattice_.shift(v, {-x, -y});
+          after_.clear();
+          for (const Piece& piece : before_) after_.push_back(pieces_.shifted(piece, {x, y}));
+          const double left = flaws(after_, enough);
+          if (left > enough || lattice_.shift_spoils_lines(v, {x, y})) continue;
+          const double cost = left + against_stretching * misfit(v, {x, y});
           if (cost >= least || !pieces_.keep_angles(before_, after_)) continue;
           least = cost;
           best = {x, y};
@@ -373,7 +375,7 @@ class LatticeRepair {
         const Index into = PolygonMap::twin(g);
         if (!lattice_.may_collapse(into)) return;
         pieces_.collapsed(into, after_);
-        const double left = flaws(after_);
+        const double left = flaws(after_, least);
         if (left >= least || !pieces_.keep_angles(before_, after_, v)) return;
         least = left;
         best = into;

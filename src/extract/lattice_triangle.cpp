@@ -157,18 +157,20 @@ double LatticeTriangle::misfit_of_plane(double area) {
 double LatticeTriangle::flaw_of_cone() const {
   const LatticeMetric metric{posy};
   const auto corners = unroll(*this);
-  double result = 0, size = 0, turn = 0;
+  double result = 0, size = 0;
   bool apex_is_corner = false;
   for (int k = 0; k < 3; ++k) {
     const double part = cross(corners[k], corners[k + 1]);
     if (part < -rounding) result += turned * (0.5 - part);
     size += part;
-    turn += std::abs(metric.angle(corners[k], corners[k + 1]));
     apex_is_corner = apex_is_corner || metric.squared_length(corners[k]) < rounding;
   }
   if (result > 0) return result;
   if (size < 0.25) return flat;
-  return apex_is_corner || std::abs(turn - apex_angle()) < 1e-3 ? 0 : turned;
+  if (apex_is_corner) return 0;
+  double turn = 0;
+  for (int k = 0; k < 3; ++k) turn += std::abs(metric.angle(corners[k], corners[k + 1]));
+  return std::abs(turn - apex_angle()) < 1e-3 ? 0 : turned;
 }
 
 }  // namespace meshgrain
