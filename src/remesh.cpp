@@ -108,10 +108,11 @@ void make_mesh(Pipeline& pipeline) {
   pipeline.report_fields();
 }
 
-Made make(Mesh input, const RemeshOptions& options, const std::optional<FaultCounts>& to_beat,
+Made make(Mesh input, const RemeshOptions& options, const std::optional<Wanted>& wanted,
           const Context& context) {
   Pipeline pipeline(input, options, context);
-  if (to_beat) pipeline.beat(*to_beat);
+  if (wanted) pipeline.beat(wanted->fewer_than);
+  if (wanted && wanted->with_creases) pipeline.keep_creases();
   pipeline.clean_up(std::move(input));
   Mesh seamed = may_remake(options) ? pipeline.seamed_surface() : Mesh();
   // Where faces beside seams are bad, it is better to join these than to bend them.
@@ -122,12 +123,14 @@ Made make(Mesh input, const RemeshOptions& options, const std::optional<FaultCou
   Faults faults = pipeline.find_faults();
   const double side = pipeline.face_side();
   const bool has_marks = pipeline.has_marks() || pipeline.is_sharpened();
+  const bool is_without_creases = pipeline.has_left_out_creases();
   return {std::move(pipeline).result(),
           std::move(faults),
           side,
           std::move(notes),
           std::move(seamed),
-          has_marks};
+          has_marks,
+          is_without_creases};
 }
 
 /// One half of a mesh, whose tunnels must be those of the other, and its border where they meet.

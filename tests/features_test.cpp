@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <map>
 #include <numbers>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "features/mechanical_creases.h"
 #include "finish/crossings.h"
 #include "kept_creases.h"
+#include "made_cells.h"
 #include "made_fields.h"
 #include "made_graph.h"
 #include "mesh/border.h"
@@ -433,6 +435,33 @@ TEST(Features, StepsOfVoxelsYieldToSoundFaces) {
   options.face_count = 300;
   options.features.creases = Creases::by_angle;  // those that are asked for stay
   EXPECT_FALSE(says_so(remesh(ball, options)));
+}
+
+/// A block with ten grooves in a corner of its top, far narrower than a face.
+Mesh grooved_block() {
+  std::set<made::Cell> cells;
+  for (int x = 0; x < 32; ++x) {
+    for (int y = 0; y < 32; ++y) {
+      const bool is_groove = x % 2 == 1 && x < 12 && y >= 2 && y < 12;
+      for (int z = 0; z < (is_groove ? 14 : 16); ++z) cells.insert({x, y, z});
+    }
+  }
+  return made::surface_of_cells(cells);
+}
+
+/// As all of them did, which made a sack of the block.
+TEST(Features, CreasesYieldToSoundFacesOnlyNearThese) {
+  const Mesh block = grooved_block();
+  RemeshOptions options;
+  options.face_count = 200;
+  const RemeshResult result = remesh(block, options);
+  expect_sound(result.mesh, block, options.face_count);
+  EXPECT_TRUE(find_crossings(result.mesh, Context()).empty());
+  ASSERT_EQ(result.report.notes.size(), 1u);
+  EXPECT_TRUE(result.report.notes[0].starts_with("without creases in places: "));
+  std::set<made::Cell> all;
+  for (int k = 0; k < 32 * 32 * 16; ++k) all.insert({k % 32, k / 32 % 32, k / 32 / 32});
+  EXPECT_GT(made::kept_creases(made::surface_of_cells(all), result.mesh).creases, 0.6);
 }
 
 }  // namespace

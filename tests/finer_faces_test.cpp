@@ -85,5 +85,22 @@ TEST(FinerFaces, ABoreNarrowerThanAFaceStaysAndNothingCrosses) {
   EXPECT_TRUE(result.fields.surface.values.empty());
 }
 
+/// Edges that are a quarter as long around all of these bores would be twice as long elsewhere.
+TEST(FinerFaces, ShapesElsewhereAreNoPriceForFewerCrossings) {
+  Mesh ball = sample_shape("sphere", 0.7);
+  for (const auto& [from, aside] : {std::pair(Vec3(1, 0, 0), Vec3(0, 0, 1)),
+                                    {Vec3(-1, 0, 0), Vec3(0, 0, -1)},
+                                    {Vec3(0, 1, 0), Vec3(1, 0, 0)}}) {
+    drill(ball, face_towards(ball, from), face_towards(ball, 0.697f * from + 0.717f * aside));
+  }
+  RemeshOptions options;
+  options.face_count = 600;
+  const MeshStatistics s = mesh_statistics(remesh(ball, options).mesh);
+  made::expect_same_topology(s, mesh_statistics(ball));
+  EXPECT_EQ(s.inverted_quads, 0u);
+  EXPECT_NEAR(static_cast<double>(s.faces), 600, 6);
+  EXPECT_LT(s.area_max, 4);
+}
+
 }  // namespace
 }  // namespace meshgrain

@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "finish/box_cells.h"
 #include "finish/near_surface.h"
 #include "finish/vertex_batches.h"
 #include "measure/bvh.h"
+#include "mesh/box_cells.h"
 #include "mesh/vertex_faces.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"

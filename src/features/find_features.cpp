@@ -77,7 +77,8 @@ Edges find_creases(const Mesh& mesh, const FeatureOptions& options, double edge_
 
 std::vector<EdgeOfLine> feature_edges(const Mesh& mesh, const FeatureOptions& options,
                                       double edge_length, const Context& context,
-                                      std::span<const std::array<Index, 2>> cuts) {
+                                      std::span<const std::array<Index, 2>> cuts,
+                                      const BoxCells* without) {
   auto [rim, creases] = rim_and_creases(mesh, options, edge_length, context);
   if (!cuts.empty()) {
     rim.insert(rim.end(), cuts.begin(), cuts.end());
@@ -96,13 +97,20 @@ std::vector<EdgeOfLine> feature_edges(const Mesh& mesh, const FeatureOptions& op
     const bool is_marked = std::binary_search(marked.begin(), marked.end(), ends);
     if (!is_marked) edges.push_back({ends, LineKind::crease});
   }
+  if (without != nullptr) {
+    std::erase_if(edges, [&](const EdgeOfLine& edge) {
+      const auto [a, b] = edge.ends;
+      const Vec3 middle = 0.5f * (mesh.positions[a] + mesh.positions[b]);
+      return edge.kind != LineKind::border && without->contains(middle);
+    });
+  }
   return leave_out_creases_beside_lines(mesh, edges, edge_length);
 }
 
 FeatureLines find_features(const Mesh& mesh, const FeatureOptions& options,
                            const GuideLines& guides, std::span<const std::array<Index, 2>> cuts,
-                           double edge_length, const Context& context) {
-  std::vector<EdgeOfLine> edges = feature_edges(mesh, options, edge_length, context, cuts);
+                           double edge_length, const BoxCells* without, const Context& context) {
+  std::vector<EdgeOfLine> edges = feature_edges(mesh, options, edge_length, context, cuts, without);
   std::vector<std::array<Index, 2>> others;
   for (const EdgeOfLine& edge : edges) others.push_back(edge.ends);
   std::sort(others.begin(), others.end());

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "finish/box_cells.h"
 #include "measure/bvh.h"
+#include "mesh/box_cells.h"
 #include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
 

@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "field/rosy.h"
-#include "finish/box_cells.h"
 #include "finish/crossing_guard.h"
 #include "finish/crossings.h"
 #include "finish/face_shape.h"
 #include "finish/near_surface.h"
 #include "finish/vertex_batches.h"
+#include "mesh/box_cells.h"
 #include "util/indices.h"
 #include "util/sort_unique.h"
 

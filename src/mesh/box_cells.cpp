@@ -1,4 +1,4 @@
-#include "finish/box_cells.h"
+#include "mesh/box_cells.h"
 
 #include <algorithm>
 

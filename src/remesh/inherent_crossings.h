@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "finish/box_cells.h"
 #include "measure/bvh.h"
+#include "mesh/box_cells.h"
 #include "mesh/cut_apart.h"
 #include "meshgrain/context.h"
 #include "meshgrain/mesh.h"

@@ -140,7 +140,7 @@ void Pipeline::find_lines() {
       // Triangles cannot follow two creases that meet at right angles.
       if (posy_of(options_.faces) == 6) options.align_creases = 0.3f;
       features_ = find_features(surface_, options, guides_, cuts_.edges, target_.face_side(area_),
-                                context_);
+                                without_creases_.get(), context_);
     };
     find();
     if (may_leave_out_creases() && !has_marks() && lines_have_no_room()) {
@@ -431,6 +431,7 @@ void Pipeline::aim_at(OutputFaces lattice_faces) {
 }
 
 void Pipeline::change_target(const RemeshOptions& options) {
+  const bool left_out_some = std::exchange(without_creases_, {}) != nullptr;
   const bool left_out_creases = std::exchange(leaves_out_creases_, false);
   divides_borders_ = false;
   const bool started_elsewhere = std::exchange(other_start_, 0) != 0;
@@ -442,7 +443,8 @@ void Pipeline::change_target(const RemeshOptions& options) {
   size_faces();
   keeps_singularities_.clear();
   inherent_crossings_.reset();  // what is near to them depends on the size of a face
-  if (left_out_creases == leaves_out_creases_ && !started_elsewhere && !was_thorough) return;
+  const bool has_same_lines = !left_out_some && left_out_creases == leaves_out_creases_;
+  if (has_same_lines && !started_elsewhere && !was_thorough) return;
   complete_levels();
   orient();
 }

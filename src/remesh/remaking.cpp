@@ -26,7 +26,8 @@ Remaking::Remaking(Made& made, const RemeshOptions& options, const Make& make,
 
 Made Remaking::made_of(Mesh surface, const RemeshOptions& options, const Made& before,
                        const std::string& note) {
-  Made other = make_(std::move(surface), options, made_.faults, context_);
+  const Wanted wanted{made_.faults, keeps_creases_};
+  Made other = make_(std::move(surface), options, wanted, context_);
   RemeshReport& report = other.result.report;
   const RemeshReport& first = before.result.report;
   report.input_vertices = first.input_vertices;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
@@ -19,11 +20,26 @@ struct Made {
   std::vector<std::string> notes;  // of the input, before there were faces
   Mesh seamed;                     // the input, if seams may be joined; else empty
   bool has_marks;                  // besides those of creases that were found
+  bool is_without_creases;         // as faces could not follow them
+
+  /// Whether so many faces pass through each other that little can be seen of what the surface is:
+  /// fewer are no reason to change it.
+  bool has_many_crossings() const {
+    constexpr std::size_t many = 10;  // one in so many faces
+    return faults.crossings > result.mesh.faces.size() / many;
+  }
+  bool has_serious_faults() const { return faults.inverted > 0 || has_many_crossings(); }
 };
 
-/// Makes a mesh that is of use only if it has fewer faults than these, if any are given.
-using Make = std::function<Made(Mesh input, const RemeshOptions&,
-                                const std::optional<FaultCounts>& to_beat, const Context&)>;
+/// What a mesh must be to be of use.
+struct Wanted {
+  FaultCounts fewer_than;
+  bool with_creases;  // with some of them, at least
+};
+
+/// Makes a mesh, of use for nothing else if anything is wanted of it.
+using Make = std::function<Made(Mesh input, const RemeshOptions&, const std::optional<Wanted>&,
+                                const Context&)>;
 
 /// Whether another surface may take the place of this one, or faces of other sizes: borders and
 /// guides that stay, and values of vertices, are those of the surface as it is.
@@ -48,6 +64,9 @@ class Remaking {
   /// If it has clearly fewer faults.
   void keep_if_better(Made other);
 
+  /// From now on those of other surfaces have creases if there are any now.
+  void keep_creases() { keeps_creases_ = !made_.is_without_creases; }
+
   /// At the end: the report has the times of all.
   void report_times() { made_.result.report.stages = std::move(times_); }
 
@@ -58,6 +77,7 @@ class Remaking {
   const Context& context_;
   std::vector<StageTime> times_;
   Stages stage_;
+  bool keeps_creases_ = false;
 };
 
 }  // namespace meshgrain

@@ -3,10 +3,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 #include <utility>
 #include <vector>
 
-#include "finish/box_cells.h"
+#include "graph/vertex_graph.h"
+#include "mesh/box_cells.h"
+#include "remesh/target.h"
 
 namespace meshgrain {
 namespace {
@@ -48,6 +51,21 @@ Mesh with_lengths(const Made& made, const Finer& finer) {
   return surface;
 }
 
+/// How much longer edges may become elsewhere where faults are not serious: to get rid of some more
+/// crossings is not worth a shape that is lost, and mostly fails.
+constexpr double most_stretched = 1.4;
+
+/// How many times as long as they are the longest edges become, for as many faces.
+double stretch(const Mesh& surface, const RemeshOptions& options, const Context& context) {
+  const VertexFaces around = vertex_faces(surface, context);
+  const Graph graph = vertex_graph(surface, around, options.graph, context);
+  const double area = std::accumulate(graph.areas.begin(), graph.areas.end(), 0.0);
+  const Target target(options, options.faces, surface.positions.size(), 1);
+  const EdgeLength lengths = target.edge_lengths(graph, EdgeLength(surface.values),
+                                                 target.growth(options.sizing.grading), context);
+  return std::ranges::max(lengths.values) / target.edge_length(area);
+}
+
 }  // namespace
 
 void try_finer_faces(Made& made, const RemeshOptions& options, const Make& make,
@@ -59,13 +77,16 @@ void try_finer_faces(Made& made, const RemeshOptions& options, const Make& make,
     return;
   }
   Remaking remaking(made, options, make, context);
+  remaking.keep_creases();
   RemeshOptions sized = remaking.options();
   sized.sizing.kind = Sizing::Kind::values;
   const Made before = made;
   for (const Finer& finer : ever_more) {
     if (are_hardly_any(made.faults)) break;
+    Mesh lengths = with_lengths(before, finer);
+    if (!made.has_serious_faults() && stretch(lengths, sized, context) > most_stretched) break;
     Made other = remaking.made_of(
-        with_lengths(before, finer), sized, before,
+        std::move(lengths), sized, before,
         "made faces smaller where they would be inverted or pass through each other");
     other.result.fields.surface.values.clear();
     // Where faces stay inverted, a simpler surface may serve better than a part of the way.

@@ -12,17 +12,6 @@
 namespace meshgrain {
 namespace {
 
-/// Whether so many faces pass through each other that little can be seen of what the surface is:
-/// fewer are no reason to change it.
-bool has_many_crossings(const Made& made) {
-  constexpr std::size_t many = 10;  // one in so many faces
-  return made.faults.crossings > made.result.mesh.faces.size() / many;
-}
-
-bool has_serious_faults(const Made& made) {
-  return made.faults.inverted > 0 || has_many_crossings(made);
-}
-
 double diagonal(const Mesh& mesh) {
   Eigen::AlignedBox3f box;
   for (const Vec3& p : mesh.positions) box.extend(p);
@@ -62,10 +51,10 @@ class SimplerTopology {
     std::size_t closed_before = 0;
     const Faults& faults = before.faults;
     const std::vector<Index>& near =
-        has_many_crossings(before) ? faults.nodes : faults.nodes_of_inverted;
+        before.has_many_crossings() ? faults.nodes : faults.nodes_of_inverted;
     // How many sides of faces are around the widest tunnels that are closed.
     for (const double sides_around : {4.0, 6.0}) {
-      if (!has_serious_faults(made_)) break;
+      if (!made_.has_serious_faults()) break;
       Mesh surface = before.result.fields.surface;
       if (!before.has_marks) surface.marked_edges.clear();  // creases are found anew
       const double most = std::min(sides_around * before.side, longest);
@@ -98,7 +87,7 @@ class SimplerTopology {
 void try_simpler_topology(Made& made, const RemeshOptions& options, const Make& make,
                           const Context& context) {
   const bool is_cloud = made.result.fields.surface.is_point_cloud();
-  if (is_cloud || !may_remake(options) || !has_serious_faults(made)) return;
+  if (is_cloud || !may_remake(options) || !made.has_serious_faults()) return;
   SimplerTopology(made, options, make, context).run();
 }
 
