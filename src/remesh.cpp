@@ -123,7 +123,7 @@ Made make(Mesh input, const RemeshOptions& options, const std::optional<Wanted>&
   Faults faults = pipeline.find_faults();
   const double side = pipeline.face_side();
   const bool has_marks = pipeline.has_marks() || pipeline.is_sharpened();
-  const bool is_without_creases = pipeline.has_left_out_creases();
+  const bool is_without_creases = pipeline.leaves_out_creases();
   return {std::move(pipeline).result(),
           std::move(faults),
           side,

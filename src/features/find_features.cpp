@@ -46,6 +46,21 @@ Edges creases_by_angle(const Mesh& mesh, const RimAndSharpEdges& found, double d
   return leave_out_fragments(mesh, found.rim, std::move(creases), edge_length);
 }
 
+/// Of all that is not the rim.
+void leave_out_fragments_of(const Mesh& mesh, const Edges& rim, double edge_length,
+                            std::vector<EdgeOfLine>& edges) {
+  const auto is_rim = [](const EdgeOfLine& edge) { return edge.kind == LineKind::border; };
+  Edges others;
+  for (const EdgeOfLine& edge : edges) {
+    if (!is_rim(edge)) others.push_back(edge.ends);
+  }
+  std::ranges::sort(others);
+  others = leave_out_fragments(mesh, rim, std::move(others), edge_length);
+  std::erase_if(edges, [&](const EdgeOfLine& edge) {
+    return !is_rim(edge) && !std::ranges::binary_search(others, edge.ends);
+  });
+}
+
 RimAndCreases rim_and_creases(const Mesh& mesh, const FeatureOptions& options, double edge_length,
                               const Context& context) {
   if (options.creases == Creases::automatic) {
@@ -77,8 +92,7 @@ Edges find_creases(const Mesh& mesh, const FeatureOptions& options, double edge_
 
 std::vector<EdgeOfLine> feature_edges(const Mesh& mesh, const FeatureOptions& options,
                                       double edge_length, const Context& context,
-                                      std::span<const std::array<Index, 2>> cuts,
-                                      const BoxCells* without) {
+                                      std::span<const std::array<Index, 2>> cuts, double room) {
   auto [rim, creases] = rim_and_creases(mesh, options, edge_length, context);
   if (!cuts.empty()) {
     rim.insert(rim.end(), cuts.begin(), cuts.end());
@@ -97,20 +111,14 @@ std::vector<EdgeOfLine> feature_edges(const Mesh& mesh, const FeatureOptions& op
     const bool is_marked = std::binary_search(marked.begin(), marked.end(), ends);
     if (!is_marked) edges.push_back({ends, LineKind::crease});
   }
-  if (without != nullptr) {
-    std::erase_if(edges, [&](const EdgeOfLine& edge) {
-      const auto [a, b] = edge.ends;
-      const Vec3 middle = 0.5f * (mesh.positions[a] + mesh.positions[b]);
-      return edge.kind != LineKind::border && without->contains(middle);
-    });
-  }
+  if (room > 0) leave_out_fragments_of(mesh, rim, room, edges);
   return leave_out_creases_beside_lines(mesh, edges, edge_length);
 }
 
 FeatureLines find_features(const Mesh& mesh, const FeatureOptions& options,
                            const GuideLines& guides, std::span<const std::array<Index, 2>> cuts,
-                           double edge_length, const BoxCells* without, const Context& context) {
-  std::vector<EdgeOfLine> edges = feature_edges(mesh, options, edge_length, context, cuts, without);
+                           double edge_length, double room, const Context& context) {
+  std::vector<EdgeOfLine> edges = feature_edges(mesh, options, edge_length, context, cuts, room);
   std::vector<std::array<Index, 2>> others;
   for (const EdgeOfLine& edge : edges) others.push_back(edge.ends);
   std::sort(others.begin(), others.end());

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "features/cut_guides.h"
-#include "mesh/box_cells.h"
 #include "meshgrain/features.h"
 
 namespace meshgrain {
@@ -17,17 +16,18 @@ std::vector<std::array<Index, 2>> find_creases(const Mesh& triangles, const Feat
 
 /// The edges of the border and of the creases, each once, but for creases that faces with sides of
 /// `edge_length` could not follow. `cuts`: more edges, sorted, that are lines as the border is.
-/// `without`: if given, where nothing else is a line.
+/// `room`: if not 0, how long the sides of faces may be for which leave_out_fragments() leaves what
+/// is not the border.
 std::vector<EdgeOfLine> feature_edges(const Mesh& triangles, const FeatureOptions& options,
                                       double edge_length, const Context& context,
                                       std::span<const std::array<Index, 2>> cuts = {},
-                                      const BoxCells* without = nullptr);
+                                      double room = 0);
 
 /// The public find_features() with guides that were cut into the mesh, and the edges at which it
-/// was cut itself. Guides that run along a border or a crease are part of that. `without`: if
-/// given, where there are no creases and marked edges.
+/// was cut itself. Guides that run along a border or a crease are part of that. `room`: that of
+/// feature_edges().
 FeatureLines find_features(const Mesh& triangles, const FeatureOptions& options,
                            const GuideLines& guides, std::span<const std::array<Index, 2>> cuts,
-                           double edge_length, const BoxCells* without, const Context& context);
+                           double edge_length, double room, const Context& context);
 
 }  // namespace meshgrain

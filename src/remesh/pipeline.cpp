@@ -139,12 +139,13 @@ void Pipeline::find_lines() {
       if (options_.orientation_energy != OrientationEnergy::extrinsic) options.orient_creases = 1;
       // Triangles cannot follow two creases that meet at right angles.
       if (posy_of(options_.faces) == 6) options.align_creases = 0.3f;
-      features_ = find_features(surface_, options, guides_, cuts_.edges, target_.face_side(area_),
-                                without_creases_.get(), context_);
+      const double side = target_.face_side(area_);
+      features_ = find_features(surface_, options, guides_, cuts_.edges, side,
+                                room_for_creases_ * side, context_);
     };
     find();
     if (may_leave_out_creases() && !has_marks() && lines_have_no_room()) {
-      leaves_out_creases_ = true;
+      room_for_creases_ = no_creases;
       find();
       result_.report.notes.emplace_back(
           "without creases: there are about as many of them as edges of faces of this size");
@@ -155,7 +156,7 @@ void Pipeline::find_lines() {
 }
 
 bool Pipeline::may_leave_out_creases() const {
-  return options_.features.creases == Creases::automatic && !leaves_out_creases_ && !is_cloud_ &&
+  return options_.features.creases == Creases::automatic && !leaves_out_creases() && !is_cloud_ &&
          nodes_are_vertices_;
 }
 
@@ -431,8 +432,7 @@ void Pipeline::aim_at(OutputFaces lattice_faces) {
 }
 
 void Pipeline::change_target(const RemeshOptions& options) {
-  const bool left_out_some = std::exchange(without_creases_, {}) != nullptr;
-  const bool left_out_creases = std::exchange(leaves_out_creases_, false);
+  const double room_before = std::exchange(room_for_creases_, 0);
   divides_borders_ = false;
   const bool started_elsewhere = std::exchange(other_start_, 0) != 0;
   const bool was_thorough = std::exchange(is_thorough_, false);
@@ -443,8 +443,7 @@ void Pipeline::change_target(const RemeshOptions& options) {
   size_faces();
   keeps_singularities_.clear();
   inherent_crossings_.reset();  // what is near to them depends on the size of a face
-  const bool has_same_lines = !left_out_some && left_out_creases == leaves_out_creases_;
-  if (has_same_lines && !started_elsewhere && !was_thorough) return;
+  if (room_before == room_for_creases_ && !started_elsewhere && !was_thorough) return;
   complete_levels();
   orient();
 }

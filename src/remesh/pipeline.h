@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <memory>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,7 +13,6 @@
 #include "cloud/cloud_border.h"
 #include "features/find_features.h"
 #include "features/guide_constraints.h"
-#include "mesh/box_cells.h"
 #include "mesh/cut_apart.h"
 #include "mesh/frame.h"
 #include "mesh/surface_size.h"
@@ -42,7 +41,7 @@ class Pipeline {
 
   /// Nor does it do without all creases.
   void keep_creases() { keeps_creases_ = true; }
-  bool has_left_out_creases() const { return leaves_out_creases_; }
+  bool leaves_out_creases() const { return room_for_creases_ == no_creases; }
 
   /// The border is no price for valid faces.
   void keep_border() { keeps_border_ = true; }
@@ -170,8 +169,7 @@ class Pipeline {
     std::vector<EnergyRecord> orientation_energies;
     std::uint64_t other_start;
     bool is_thorough;
-    bool leaves_out_creases;
-    std::shared_ptr<const BoxCells> without_creases;
+    double room_for_creases;
     bool divides_borders;
     BorderLoops borders;
     FeatureLines features;
@@ -227,14 +225,9 @@ class Pipeline {
   void recover_lost_surface(const LostSurface& lost, Flaws& left);
   /// What there is without creases that nobody asked for, where faces could not follow them: the
   /// steps of a surface around voxels, or parts that are thinner than a face. First without those
-  /// near faults, then without any. Marked edges, such as the borders of materials, go with them.
-  /// Returns whether that is better.
+  /// that have no room, then without any. Marked edges, such as the borders of materials, go with
+  /// them. Returns whether that is better.
   bool try_without_creases(const Flaws& before);
-  bool may_follow_too_many(const Flaws& flaws) const;
-  /// So many sides of a face to all sides of them.
-  BoxCells places_around(const std::vector<Index>& nodes, double sides) const;
-  /// By length.
-  double share_of_creases(const BoxCells& places) const;
   /// Whether there may be creases that nobody asked for.
   bool may_leave_out_creases() const;
   /// Whether there are more lines than edges that could follow them, as where each facet of a
@@ -340,8 +333,9 @@ class Pipeline {
   GuideLines guides_;                  // that edges follow
   std::vector<GuideRun> soft_guides_;  // that fields are drawn to
   bool is_thorough_ = false;           // the orientation field, over flat sides as well
-  bool leaves_out_creases_ = false;    // all of them
-  std::shared_ptr<const BoxCells> without_creases_;  // or those there
+  // In sides of a face: those with less are left out (see feature_edges()).
+  double room_for_creases_ = 0;
+  static constexpr double no_creases = std::numeric_limits<double>::infinity();
   bool divides_borders_ = false;
   FeatureLines features_;
   FeatureConstraints constraints_;

@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -164,79 +162,36 @@ void Pipeline::keep_singularities_around(const std::vector<Index>& nodes) {
   }
 }
 
-bool Pipeline::may_follow_too_many(const Flaws& flaws) const {
+bool Pipeline::try_without_creases(const Flaws& before) {
   const std::size_t faces = extraction_.mesh.faces.size();
   const bool are_too_fine =
-      flaws.faults.all() > 0 && target_.finished_ratio(extraction_.mesh) > 1 + target_.tolerance();
+      before.faults.all() > 0 && target_.finished_ratio(extraction_.mesh) > 1 + target_.tolerance();
   // Where there are more than two faults a face, nothing helps.
-  return (flaws.are_hopeless(faces) || are_too_fine) && flaws.faults.all() <= 2 * faces;
-}
-
-BoxCells Pipeline::places_around(const std::vector<Index>& nodes, double sides) const {
-  const auto reach = static_cast<float>(sides * target_.face_side(area_));
-  std::vector<Eigen::AlignedBox3f> boxes;
-  for (const Index i : nodes) {
-    const Vec3& p = graph().positions[i];
-    boxes.emplace_back(p.array() - reach, p.array() + reach);
-  }
-  return {boxes, reach / 4};
-}
-
-double Pipeline::share_of_creases(const BoxCells& places) const {
-  const auto on_rim = rim_vertices(surface_, context_);
-  double inside = 0, all = 0;
-  for (std::size_t line = 0; line < features_.size(); ++line) {
-    for (Index k = features_.begin(line) + 1; k < features_.end(line); ++k) {
-      if (on_rim[features_.vertices[k - 1]] != 0 && on_rim[features_.vertices[k]] != 0) continue;
-      const Vec3 &a = features_.positions[k - 1], &b = features_.positions[k];
-      const double length = (b - a).norm();
-      all += length;
-      if (places.contains(0.5f * (a + b))) inside += length;
-    }
-  }
-  return all > 0 ? inside / all : 1;
-}
-
-bool Pipeline::try_without_creases(const Flaws& before) {
-  if (!may_follow_too_many(before) || !may_leave_out_creases()) return false;
+  if (!(before.are_hopeless(faces) || are_too_fine) || before.faults.all() > 2 * faces)
+    return false;
+  if (!may_leave_out_creases()) return false;
   const auto on_rim = rim_vertices(surface_, context_);
   const auto is_inside = [&](Index v) { return on_rim[v] == 0; };
   if (std::ranges::none_of(features_.vertices, is_inside)) return false;
-  Flaws least = before;
-  const auto try_it = [&](const std::function<void()>& leave_out) {
-    Flaws now;
-    const auto is_better = [&] {
-      now = flaws(0);
-      return 2 * now.faults.all() < least.faults.all();
-    };
-    const auto change = [&] {
-      leave_out();
+  const auto is_better = [&] { return 2 * flaws(0).faults.all() < before.faults.all(); };
+  for (const double room : {1.0, 2.0, no_creases}) {
+    if (room <= room_for_creases_ || (room == no_creases && keeps_creases_)) continue;
+    const auto leave_out = [&] {
+      room_for_creases_ = room;
       keeps_singularities_.clear();
       aim_at(options_.faces);
       find_lines();
       complete_levels();
       orient();
     };
-    if (!try_again(is_better, change)) return false;
-    least = now;
+    if (!try_again(is_better, leave_out)) continue;
+    result_.report.notes.emplace_back(fmt::format(
+        "without {}creases{}: faces of this size that follow them would {}pass through each other",
+        room == no_creases ? "" : "some ", has_marks() ? " and marked edges" : "",
+        has_marks() ? "be inverted or " : ""));
     return true;
-  };
-  constexpr double nearly_all = 0.9;
-  bool left_out_some = false;
-  for (const double sides : {2.0, 4.0}) {
-    const auto places = std::make_shared<const BoxCells>(places_around(find_faults().nodes, sides));
-    if (share_of_creases(*places) > nearly_all) break;
-    left_out_some = try_it([&] { without_creases_ = places; });
-    if (left_out_some) break;
   }
-  const bool left_out_all =
-      !keeps_creases_ && may_follow_too_many(least) && try_it([&] { leaves_out_creases_ = true; });
-  if (!left_out_some && !left_out_all) return false;
-  result_.report.notes.emplace_back(fmt::format(
-      "without creases{}{}: faces of this size that follow them would {}pass through each other",
-      has_marks() ? " and marked edges" : "", left_out_all ? "" : " in places",
-      has_marks() ? "be inverted or " : ""));
-  return true;
+  return false;
 }
 
 bool Pipeline::try_divided_borders(const Flaws& before) {
@@ -347,8 +302,7 @@ Pipeline::Attempt Pipeline::take_attempt() {
           report.orientation_energies,
           other_start_,
           is_thorough_,
-          leaves_out_creases_,
-          without_creases_,
+          room_for_creases_,
           divides_borders_,
           borders_,
           features_,
@@ -368,8 +322,7 @@ void Pipeline::put_back(Attempt&& attempt) {
   result_.report.orientation_energies = std::move(attempt.orientation_energies);
   other_start_ = attempt.other_start;
   is_thorough_ = attempt.is_thorough;
-  leaves_out_creases_ = attempt.leaves_out_creases;
-  without_creases_ = std::move(attempt.without_creases);
+  room_for_creases_ = attempt.room_for_creases;
   divides_borders_ = attempt.divides_borders;
   borders_ = std::move(attempt.borders);
   features_ = std::move(attempt.features);

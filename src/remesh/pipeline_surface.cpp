@@ -147,7 +147,7 @@ void Pipeline::thin_out_cloud() {
 
 FeatureOptions Pipeline::feature_options() const {
   FeatureOptions options = options_.features;
-  if (leaves_out_creases_) {
+  if (leaves_out_creases()) {
     options.creases = Creases::none;
     return options;
   }
