@@ -410,7 +410,7 @@ TEST(Features, MarksYieldToSoundFaces) {
   const RemeshResult result = remesh(field, options);
   expect_sound(result.mesh, field, options.face_count);
   ASSERT_EQ(result.report.notes.size(), 1u);
-  EXPECT_TRUE(result.report.notes[0].starts_with("without some creases and marked edges: "));
+  EXPECT_TRUE(result.report.notes[0].starts_with("without creases and marked edges: "));
 }
 
 TEST(Features, StepsOfVoxelsYieldToSoundFaces) {

@@ -164,17 +164,21 @@ bool Pipeline::has_marks() const {
   return is_coarsened_ ? had_marks_ : !surface_.marked_edges.empty();
 }
 
-bool Pipeline::lines_have_no_room() const {
+double Pipeline::share_of_lines() const {
   double length = 0;
   for (std::size_t line = 0; line < features_.size(); ++line) {
     for (Index k = features_.begin(line) + 1; k < features_.end(line); ++k) {
       length += (features_.positions[k] - features_.positions[k - 1]).norm();
     }
   }
-  // A mesh of quads has twice as many edges as faces. Of forty parts at 300 faces, lines of all but
-  // one take less of them.
-  constexpr double most = 0.75 * 2;
-  return length * target_.face_side(area_) > most * area_;
+  // A mesh of quads has twice as many edges as faces.
+  return length * target_.face_side(area_) / (2 * area_);
+}
+
+bool Pipeline::lines_have_no_room() const {
+  // Of forty parts at 300 faces, lines of all but one take less.
+  constexpr double most = 0.75;
+  return share_of_lines() > most;
 }
 
 bool Pipeline::is_coarse_for_bends() const {

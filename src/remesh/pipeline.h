@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "border/border_loops.h"
@@ -178,6 +179,7 @@ class Pipeline {
     Target target;
     EdgeLength lengths;
     std::vector<std::uint8_t> keeps_singularities;
+    std::vector<std::string> notes;
   };
   /// Leaves no faces, but all that others can be made from.
   Attempt take_attempt();
@@ -230,6 +232,8 @@ class Pipeline {
   bool try_without_creases(const Flaws& before);
   /// Whether there may be creases that nobody asked for.
   bool may_leave_out_creases() const;
+  /// Of all edges of the faces, about those that follow lines.
+  double share_of_lines() const;
   /// Whether there are more lines than edges that could follow them, as where each facet of a
   /// twisted bar or a thin hair counts as a crease.
   bool lines_have_no_room() const;

@@ -174,8 +174,13 @@ bool Pipeline::try_without_creases(const Flaws& before) {
   const auto is_inside = [&](Index v) { return on_rim[v] == 0; };
   if (std::ranges::none_of(features_.vertices, is_inside)) return false;
   const auto is_better = [&] { return 2 * flaws(0).faults.all() < before.faults.all(); };
+  // Those that are everywhere, as steps of voxels are, are no better where some are left. Of 23
+  // parts of machines, lines of one take more.
+  constexpr double everywhere = 0.5;  // of all edges
+  const double least_room = share_of_lines() > everywhere ? no_creases : room_for_creases_;
   for (const double room : {1.0, 2.0, no_creases}) {
-    if (room <= room_for_creases_ || (room == no_creases && keeps_creases_)) continue;
+    if (room < least_room || room == room_for_creases_) continue;
+    if (room == no_creases && keeps_creases_) continue;
     const auto leave_out = [&] {
       room_for_creases_ = room;
       keeps_singularities_.clear();
@@ -185,7 +190,9 @@ bool Pipeline::try_without_creases(const Flaws& before) {
       orient();
     };
     if (!try_again(is_better, leave_out)) continue;
-    result_.report.notes.emplace_back(fmt::format(
+    std::vector<std::string>& notes = result_.report.notes;
+    std::erase_if(notes, [](const auto& note) { return note.starts_with("without some creases"); });
+    notes.emplace_back(fmt::format(
         "without {}creases{}: faces of this size that follow them would {}pass through each other",
         room == no_creases ? "" : "some ", has_marks() ? " and marked edges" : "",
         has_marks() ? "be inverted or " : ""));
@@ -310,7 +317,8 @@ Pipeline::Attempt Pipeline::take_attempt() {
           lattice_faces_,
           target_,
           lengths_,
-          keeps_singularities_};
+          keeps_singularities_,
+          report.notes};
 }
 
 void Pipeline::put_back(Attempt&& attempt) {
@@ -331,6 +339,7 @@ void Pipeline::put_back(Attempt&& attempt) {
   target_ = attempt.target;
   lengths_ = std::move(attempt.lengths);
   keeps_singularities_ = std::move(attempt.keeps_singularities);
+  result_.report.notes = std::move(attempt.notes);
 }
 
 }  // namespace meshgrain
