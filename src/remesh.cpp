@@ -12,6 +12,7 @@
 #include "remesh/pipeline.h"
 #include "remesh/target.h"
 #include "remesh/try_finer_faces.h"
+#include "remesh/try_no_creases.h"
 #include "remesh/try_simpler_topology.h"
 #include "symmetry/remesh_symmetric.h"
 
@@ -124,13 +125,15 @@ Made make(Mesh input, const RemeshOptions& options, const std::optional<Wanted>&
   const double side = pipeline.face_side();
   const bool has_marks = pipeline.has_marks() || pipeline.is_sharpened();
   const bool is_without_creases = pipeline.leaves_out_creases();
+  const bool is_without_some_creases = pipeline.leaves_out_some_creases();
   return {std::move(pipeline).result(),
           std::move(faults),
           side,
           std::move(notes),
           std::move(seamed),
           has_marks,
-          is_without_creases};
+          is_without_creases,
+          is_without_some_creases};
 }
 
 /// One half of a mesh, whose tunnels must be those of the other, and its border where they meet.
@@ -145,6 +148,7 @@ RemeshResult remesh_half(Mesh input, const RemeshOptions& options, const Context
 
 RemeshResult remesh_whole(Mesh input, const RemeshOptions& options, const Context& context) {
   Made made = make(std::move(input), options, std::nullopt, context);
+  try_no_creases(made, options, make, context);
   try_finer_faces(made, options, make, context);
   try_simpler_topology(made, options, make, context);
   return std::move(made.result);

@@ -43,6 +43,7 @@ class Pipeline {
   /// Nor does it do without all creases.
   void keep_creases() { keeps_creases_ = true; }
   bool leaves_out_creases() const { return room_for_creases_ == no_creases; }
+  bool leaves_out_some_creases() const { return room_for_creases_ > 0 && !leaves_out_creases(); }
 
   /// The border is no price for valid faces.
   void keep_border() { keeps_border_ = true; }

@@ -21,6 +21,7 @@ struct Made {
   Mesh seamed;                     // the input, if seams may be joined; else empty
   bool has_marks;                  // besides those of creases that were found
   bool is_without_creases;         // as faces could not follow them
+  bool is_without_some_creases;    // but not without all
 
   /// Whether so many faces pass through each other that little can be seen of what the surface is:
   /// fewer are no reason to change it.
