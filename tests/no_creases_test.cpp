@@ -14,6 +14,7 @@ namespace {
 Made made_with(std::size_t inverted) {
   Made made{};
   made.result.mesh = made.result.fields.surface = sample_shape("cube");
+  made.result.fields.surface.marked_edges = {{0, 1}};  // of a crease that was found
   made.faults.inverted = inverted;
   return made;
 }
@@ -31,6 +32,7 @@ TEST(NoCreases, AreTriedWhereFacesAreInvertedWithoutSome) {
                         const std::optional<Wanted>& wanted, const Context&) {
     ++calls;
     EXPECT_FALSE(input.faces.empty());
+    EXPECT_TRUE(input.marked_edges.empty());
     EXPECT_EQ(options.features.creases, Creases::none);
     EXPECT_EQ(wanted.value().fewer_than.inverted, 2u);
     return made_with(left);

@@ -10,9 +10,13 @@ void try_no_creases(Made& made, const RemeshOptions& options, const Make& make,
   Remaking remaking(made, options, make, context);
   RemeshOptions without = remaking.options();
   without.features.creases = Creases::none;
-  Made other =
-      remaking.made_of(made.result.fields.surface, without, Made(made),
-                       "without creases: faces of this size that follow them would be inverted");
+  Mesh surface = made.result.fields.surface;
+  if (!made.has_marks) surface.marked_edges.clear();  // those of creases that were found
+  Made other = remaking.made_of(
+      std::move(surface), without, made,
+      made.has_marks ? "without creases and marked edges: faces of this size that follow them "
+                       "would be inverted"
+                     : "without creases: faces of this size that follow them would be inverted");
   other.is_without_creases = true;
   remaking.keep_if_better(std::move(other));
   remaking.report_times();
