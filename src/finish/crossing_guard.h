@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "finish/crossing_pairs.h"
 #include "mesh/part.h"
 #include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
@@ -23,9 +24,8 @@ class CrossingGuard {
 
  private:
   Mesh& mesh_;
-  const Context& context_;
   Part part_;  // those faces
-  std::vector<std::array<Index, 2>> crossings_;
+  CrossingPairs crossings_;
 };
 
 }  // namespace meshgrain

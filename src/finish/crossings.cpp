@@ -292,6 +292,26 @@ FaceGrid::FaceGrid(const Mesh& mesh, const Context& context) : boxes_(mesh.faces
       [&](std::uint64_t bucket, const Entry& entry) { entries_[--starts_[bucket]] = entry; });
 }
 
+/// Pairs of faces whose boxes meet and that are wanted, the lower number first, in increasing
+/// order.
+template <typename IsWanted>
+std::vector<std::array<Index, 2>> find_pairs(const Mesh& mesh, const Context& context,
+                                             const IsWanted& is_wanted) {
+  const FaceGrid grid(mesh, context);
+  auto result = collect<std::array<Index, 2>>(
+      grid.buckets(),
+      [&](std::size_t begin, std::size_t end, std::vector<std::array<Index, 2>>& found) {
+        for (std::size_t bucket = begin; bucket < end; ++bucket) {
+          grid.for_each_pair(bucket, [&](Index f, Index g) {
+            if (is_wanted(f, g)) found.push_back({f, g});
+          });
+        }
+      },
+      context);
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
 }  // namespace
 
 double penetration_of_near(const Mesh& mesh, Index f, Index g) {
@@ -321,19 +341,15 @@ double penetration(const Mesh& mesh, Index f, Index g) {
 }
 
 std::vector<std::array<Index, 2>> find_crossings(const Mesh& mesh, const Context& context) {
-  const FaceGrid grid(mesh, context);
-  auto result = collect<std::array<Index, 2>>(
-      grid.buckets(),
-      [&](std::size_t begin, std::size_t end, std::vector<std::array<Index, 2>>& found) {
-        for (std::size_t bucket = begin; bucket < end; ++bucket) {
-          grid.for_each_pair(bucket, [&](Index f, Index g) {
-            if (cross_if_near(mesh, f, g)) found.push_back({f, g});
-          });
-        }
-      },
-      context);
-  std::sort(result.begin(), result.end());
-  return result;
+  return find_pairs(mesh, context, [&](Index f, Index g) { return cross_if_near(mesh, f, g); });
+}
+
+std::vector<std::array<Index, 2>> find_crossings_of(const Mesh& mesh,
+                                                    std::span<const std::uint8_t> marked,
+                                                    const Context& context) {
+  return find_pairs(mesh, context, [&](Index f, Index g) {
+    return (marked[f] | marked[g]) != 0 && cross_if_near(mesh, f, g);
+  });
 }
 
 std::size_t count_crossings_of(const Mesh& mesh, std::span<const Index> some,

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,11 @@ bool cross_if_near(const Mesh& mesh, Index f, Index g);
 
 /// All pairs of faces that pass through each other, the lower number first, in increasing order.
 std::vector<std::array<Index, 2>> find_crossings(const Mesh& mesh, const Context& context);
+
+/// Of them those with one or both of the faces that are marked, by one flag a face.
+std::vector<std::array<Index, 2>> find_crossings_of(const Mesh& mesh,
+                                                    std::span<const std::uint8_t> marked,
+                                                    const Context& context);
 
 /// How many there are of them with one or both of `some` faces, which increase.
 std::size_t count_crossings_of(const Mesh& mesh, std::span<const Index> some,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "finish/bad_places.h"
+#include "finish/crossing_pairs.h"
 #include "finish/crossings.h"
 #include "finish/face_shape.h"
 #include "finish/surface_crossings.h"
@@ -92,15 +93,15 @@ class Mending {
 
   void part_crossings() {
     std::vector<std::uint8_t> inherent(mesh_.faces.size(), 0);  // beside crossings of the surface
-    auto crossings = find_crossings(mesh_, context_);
-    is_crumpled_ = is_crumpled(crossings.size(), mesh_.faces.size());
+    CrossingPairs crossings(mesh_, context_);
+    is_crumpled_ = is_crumpled(crossings.all().size(), mesh_.faces.size());
     for (const BadPlaces::Demands& demands : ever_less) {
       demand(demands);
       bool few = true;
       for (const int rings : ever_wider) {
-        if (crossings.empty()) return;
-        few = part_all(crossings, rings, inherent) && few;
-        crossings = find_crossings(mesh_, context_);
+        if (crossings.all().empty()) return;
+        few = part_all(crossings.all(), rings, inherent) && few;
+        crossings.update();
       }
       // Poor faces are worth it only for a result that passes through itself nowhere.
       if (!few || std::ranges::count(inherent, 1) > 0) return;

@@ -82,7 +82,8 @@ class Pipeline {
   /// regularity, so that more of it is allowed only when other lengths have not helped.
   void position_and_extract();
 
-  /// Where the faces lose some of the surface, others are made before these are mended.
+  /// Where the faces lose some of the surface, others are made before these are mended; and where
+  /// they are crumpled, so that mending would take long and be in vain, those without some creases.
   void smooth_faces();
 
   /// Quads that are twisted even then leave the surface.
@@ -182,6 +183,11 @@ class Pipeline {
     std::vector<std::uint8_t> keeps_singularities;
     std::vector<std::string> notes;
   };
+  /// Faces before they are smoothed.
+  struct RoughFaces {
+    Extraction extraction;
+    bool is_split = false;
+  };
   /// Leaves no faces, but all that others can be made from.
   Attempt take_attempt();
   void put_back(Attempt&& attempt);
@@ -195,6 +201,9 @@ class Pipeline {
   /// what was before, and returns false, unless these are better.
   bool try_again(const std::function<bool()>& is_better, const std::function<void()>& change = {});
 
+  /// Without a look at creases. Returns false if the faces are crumpled, where that is asked, or
+  /// only compared: they have not been mended, then.
+  bool smooth_faces_unless(const std::function<bool()>& are_crumpled);
   /// Returns false if they are not worth mending, and have not been.
   bool smooth_faces_if(const std::function<bool()>& is_worth_mending);
   /// position_and_extract(), but there may be no faces.
@@ -341,6 +350,9 @@ class Pipeline {
   // In sides of a face: those with less are left out (see feature_edges()).
   double room_for_creases_ = 0;
   static constexpr double no_creases = std::numeric_limits<double>::infinity();
+  bool has_tried_without_creases_ = false;  // for the faces that there are
+  bool only_compares_ = false;              // faces, and mends none
+  RoughFaces rough_;                        // of those that were smoothed last
   bool divides_borders_ = false;
   FeatureLines features_;
   FeatureConstraints constraints_;

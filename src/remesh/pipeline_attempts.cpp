@@ -99,34 +99,56 @@ Faults Pipeline::find_faults() {
 }
 
 void Pipeline::smooth_faces() {
-  constexpr int most_attempts = 3;
-  if (!may_make_others() || !may_be_irregular()) {
-    smooth_faces_if({});
-    return;
+  const auto are_crumpled = [&] {
+    constexpr std::size_t few = 8;  // 40 meshes with more of them all had too many in the end
+    return inverted_faces() > extraction_.mesh.faces.size() / few;
+  };
+  has_tried_without_creases_ = false;
+  const bool creases_may_yield = may_make_others() && may_leave_out_creases() && borders_.empty();
+  if (!creases_may_yield) {
+    smooth_faces_unless({});
+  } else if (!smooth_faces_unless(are_crumpled)) {
+    RoughFaces rough = std::move(rough_);
+    only_compares_ = true;
+    if (try_without_creases(flaws(0))) rough = std::move(rough_);
+    only_compares_ = false;
+    extraction_ = std::move(rough.extraction);
+    is_split_ = rough.is_split;
+    smooth_faces_unless({});
   }
+  rough_ = {};
+}
+
+bool Pipeline::smooth_faces_unless(const std::function<bool()>& are_crumpled) {
+  constexpr int most_attempts = 3;
+  const bool may_try = may_make_others() && may_be_irregular() && !only_compares_;
   Attempt best;
   LostSurface least;
-  for (int attempt = 0; attempt < most_attempts; ++attempt) {
+  for (int attempt = 0; may_try && attempt < most_attempts; ++attempt) {
     if (attempt > 0 && !make_faces_again()) break;
-    Extraction rough = extraction_;
-    const bool was_split = is_split_;
+    rough_ = {extraction_, is_split_};
     LostSurface lost;
-    const auto is_little_lost = [&] {
+    bool is_in_vain = false;
+    const auto is_worth_mending = [&] {
+      is_in_vain = are_crumpled && are_crumpled();
+      if (is_in_vain) return false;
       lost = lost_surface();
       return lost.faces <= LostSurface::little_before;
     };
-    if (smooth_faces_if(is_little_lost)) return;
+    if (smooth_faces_if(is_worth_mending)) return true;
+    if (is_in_vain) return false;
     keep_singularities_around(lost.nodes);
     Attempt now = take_attempt();
-    now.extraction = std::move(rough);
-    now.is_split = was_split;
+    now.extraction = std::move(rough_.extraction);
+    now.is_split = rough_.is_split;
     if (attempt == 0 || lost.is_considerably_less_than(least)) {
       best = std::move(now);
       least = std::move(lost);
     }
   }
-  put_back(std::move(best));
-  smooth_faces_if({});
+  if (may_try) put_back(std::move(best));
+  if (only_compares_ || are_crumpled) rough_ = {extraction_, is_split_};
+  return smooth_faces_if([&] { return !only_compares_ && !(are_crumpled && are_crumpled()); });
 }
 
 void Pipeline::recover_lost_surface(const LostSurface& lost, Flaws& left) {
@@ -178,6 +200,7 @@ bool Pipeline::try_without_creases(const Flaws& before) {
   // parts of machines, lines of one take more.
   constexpr double everywhere = 0.5;  // of all edges
   const double least_room = share_of_lines() > everywhere ? no_creases : room_for_creases_;
+  has_tried_without_creases_ = true;
   for (const double room : {1.0, 2.0, no_creases}) {
     if (room < least_room || room == room_for_creases_) continue;
     if (room == no_creases && keeps_creases_) continue;
@@ -221,7 +244,7 @@ bool Pipeline::mend_flaws() {
   if (!may_make_others()) return false;
   LostSurface lost = lost_surface();
   Flaws left = flaws(lost.faces);
-  if (try_divided_borders(left) || try_without_creases(left)) {
+  if (try_divided_borders(left) || (!has_tried_without_creases_ && try_without_creases(left))) {
     lost = lost_surface();
     left = flaws(lost.faces);
   }
@@ -291,7 +314,7 @@ bool Pipeline::try_again(const std::function<bool()>& is_better,
   Attempt before = take_attempt();
   if (change) change();
   if (make_faces_again()) {
-    smooth_faces();
+    smooth_faces_unless({});
     untwist_faces();
     if (is_better()) return true;
   }
