@@ -124,16 +124,16 @@ Made make(Mesh input, const RemeshOptions& options, const std::optional<Wanted>&
   Faults faults = pipeline.find_faults();
   const double side = pipeline.face_side();
   const bool has_marks = pipeline.has_marks() || pipeline.is_sharpened();
-  const bool is_without_creases = pipeline.leaves_out_creases();
-  const bool is_without_some_creases = pipeline.leaves_out_some_creases();
+  const double room_for_creases = pipeline.room_for_creases();
+  const bool follows_creases = faults.inverted > 0 && pipeline.follows_creases();
   return {std::move(pipeline).result(),
           std::move(faults),
           side,
           std::move(notes),
           std::move(seamed),
           has_marks,
-          is_without_creases,
-          is_without_some_creases};
+          room_for_creases,
+          follows_creases};
 }
 
 /// One half of a mesh, whose tunnels must be those of the other, and its border where they meet.

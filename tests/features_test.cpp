@@ -125,6 +125,30 @@ TEST(Features, CreasesAreFoundAmongCoarseFacets) {
   }
 }
 
+/// Two rods: the facets of one are so coarse that the creases at its ends are no clean lines.
+Mesh rods() {
+  Mesh mesh = prism(24, 20);
+  const Mesh coarse = prism(10, 20);
+  const auto first = static_cast<Index>(mesh.positions.size());
+  for (const Vec3& p : coarse.positions) mesh.positions.push_back(0.7f * p + Vec3(5, 0, 0));
+  for (Index f = 0; f < coarse.faces.size(); ++f) {
+    const auto face = coarse.faces[f];
+    mesh.faces.push_back({face[0] + first, face[1] + first, face[2] + first});
+  }
+  return mesh;
+}
+
+/// No mechanical part by all of its edges, but most of the sharp ones are clean and stick out.
+TEST(Features, CreasesOfRoundedPartsAreFound) {
+  Mesh mesh = rods();
+  const auto found = rim_and_sharp_edges(mesh, flat_degrees, Context(1));
+  ASSERT_TRUE(mechanical_creases(mesh, found, Context(1)).empty());
+  EXPECT_EQ(find_features(mesh, {}, 0.2).size(), 4u);
+  EXPECT_EQ(find_features(mesh, {}, 2).size(), 2u) << "one is too short for such faces";
+  for (Index f = 0; f < mesh.faces.size(); ++f) std::swap(mesh.faces[f][0], mesh.faces[f][1]);
+  EXPECT_TRUE(find_features(mesh, {}, 0.2).empty()) << "lines of a sculpture are hollow";
+}
+
 /// Faces cannot keep the two rims of a thin sheet apart, if it is very thin or much wider.
 TEST(Features, OfCreasesBesideEachOtherTheFirstStays) {
   const auto lines_of_sheet = [](float thickness, double edge_length) {

@@ -25,7 +25,7 @@ bool is_noted(const Made& made) {
   });
 }
 
-TEST(NoCreases, AreTriedWhereFacesAreInvertedWithoutSome) {
+TEST(NoCreases, AreTriedWhereFacesThatFollowSomeAreInverted) {
   std::size_t left = 0;
   int calls = 0;
   const Make make = [&](Mesh input, const RemeshOptions& options,
@@ -39,19 +39,19 @@ TEST(NoCreases, AreTriedWhereFacesAreInvertedWithoutSome) {
   };
   Made made = made_with(2);
   try_no_creases(made, {}, make, Context());
-  EXPECT_EQ(calls, 0);  // they are as they were
+  EXPECT_EQ(calls, 0);  // they follow none
 
-  made.is_without_some_creases = true;
+  made.follows_creases = true;
   left = 2;
   try_no_creases(made, {}, make, Context());
   EXPECT_EQ(calls, 1);
-  EXPECT_TRUE(made.is_without_some_creases && !made.is_without_creases && !is_noted(made));
+  EXPECT_TRUE(made.follows_creases && !made.is_without_creases() && !is_noted(made));
 
   left = 0;
   try_no_creases(made, {}, make, Context());
   EXPECT_EQ(calls, 2);
   EXPECT_EQ(made.faults.inverted, 0u);
-  EXPECT_TRUE(made.is_without_creases && !made.is_without_some_creases && is_noted(made));
+  EXPECT_TRUE(made.is_without_creases() && !made.follows_creases && is_noted(made));
   try_no_creases(made, {}, make, Context());
   EXPECT_EQ(calls, 2);
 }

@@ -33,15 +33,28 @@ struct RimAndCreases {
   Edges rim, creases;  // creases: those that are not marked
 };
 
+Edges sharper_than(double degrees, const RimAndSharpEdges& found) {
+  const double cosine = sharp_cosine(degrees);
+  Edges edges;
+  for (const SharpEdge& edge : found.sharp) {
+    if (edge.cosine < cosine) edges.push_back(edge.ends);
+  }
+  return edges;
+}
+
+Edges creases_by_themselves(const Mesh& mesh, const RimAndSharpEdges& found, double edge_length,
+                            const Context& context) {
+  if (Edges creases = mechanical_creases(mesh, found, context); !creases.empty()) return creases;
+  constexpr double sharp = 40;  // degrees
+  if (!is_rounded_part(mesh, found, sharp, context)) return {};
+  return leave_out_fragments(mesh, found.rim, sharper_than(sharp, found), edge_length);
+}
+
 /// The edges of a sculpture that are as sharp as was asked for are mostly of detail, which nobody
 /// meant to be lines.
 Edges creases_by_angle(const Mesh& mesh, const RimAndSharpEdges& found, double degrees,
                        double edge_length, const Context& context) {
-  const double cosine = sharp_cosine(degrees);
-  Edges creases;
-  for (const SharpEdge& edge : found.sharp) {
-    if (edge.cosine < cosine) creases.push_back(edge.ends);
-  }
+  Edges creases = sharper_than(degrees, found);
   if (!mechanical_creases(mesh, found, context).empty()) return creases;
   return leave_out_fragments(mesh, found.rim, std::move(creases), edge_length);
 }
@@ -65,7 +78,7 @@ RimAndCreases rim_and_creases(const Mesh& mesh, const FeatureOptions& options, d
                               const Context& context) {
   if (options.creases == Creases::automatic) {
     auto found = rim_and_sharp_edges(mesh, flat_degrees, context);
-    Edges creases = mechanical_creases(mesh, found, context);
+    Edges creases = creases_by_themselves(mesh, found, edge_length, context);
     return {std::move(found.rim), std::move(creases)};
   }
   if (options.creases == Creases::by_angle) {

@@ -34,4 +34,11 @@ std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& triangles,
                                                      const RimAndSharpEdges& edges,
                                                      const Context& context);
 
+/// Whether a surface without these is a part all the same, so rounded that between its creases and
+/// what is nearly flat there is much of anything: most edges sharper than `degrees` lie on clean
+/// lines then, and a good part of them stick out. The seams where bodies of a sculpture meet are
+/// clean, too, but hollow. `edges` are all that are not flat.
+bool is_rounded_part(const Mesh& triangles, const RimAndSharpEdges& edges, double degrees,
+                     const Context& context);
+
 }  // namespace meshgrain

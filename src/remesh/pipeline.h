@@ -42,8 +42,11 @@ class Pipeline {
 
   /// Nor does it do without all creases.
   void keep_creases() { keeps_creases_ = true; }
-  bool leaves_out_creases() const { return room_for_creases_ == no_creases; }
-  bool leaves_out_some_creases() const { return room_for_creases_ > 0 && !leaves_out_creases(); }
+  /// That creases nobody asked for need, in sides of a face: those with less are left out (see
+  /// feature_edges()), and all of them if it is infinite.
+  double room_for_creases() const { return room_for_creases_; }
+  /// Whether faces follow any.
+  bool follows_creases() const;
 
   /// The border is no price for valid faces.
   void keep_border() { keeps_border_ = true; }
@@ -240,6 +243,7 @@ class Pipeline {
   /// that have no room, then without any. Marked edges, such as the borders of materials, go with
   /// them. Returns whether that is better.
   bool try_without_creases(const Flaws& before);
+  bool leaves_out_creases() const { return room_for_creases_ == no_creases; }
   /// Whether there may be creases that nobody asked for.
   bool may_leave_out_creases() const;
   /// Of all edges of the faces, about those that follow lines.
@@ -347,8 +351,7 @@ class Pipeline {
   GuideLines guides_;                  // that edges follow
   std::vector<GuideRun> soft_guides_;  // that fields are drawn to
   bool is_thorough_ = false;           // the orientation field, over flat sides as well
-  // In sides of a face: those with less are left out (see feature_edges()).
-  double room_for_creases_ = 0;
+  double room_for_creases_ = 0;        // see room_for_creases()
   static constexpr double no_creases = std::numeric_limits<double>::infinity();
   bool has_tried_without_creases_ = false;  // for the faces that there are
   bool only_compares_ = false;              // faces, and mends none

@@ -184,6 +184,13 @@ void Pipeline::keep_singularities_around(const std::vector<Index>& nodes) {
   }
 }
 
+bool Pipeline::follows_creases() const {
+  if (!may_leave_out_creases()) return false;
+  const auto on_rim = rim_vertices(surface_, context_);
+  const auto is_inside = [&](Index v) { return on_rim[v] == 0; };
+  return std::ranges::any_of(features_.vertices, is_inside);
+}
+
 bool Pipeline::try_without_creases(const Flaws& before) {
   const std::size_t faces = extraction_.mesh.faces.size();
   const bool are_too_fine =
@@ -191,10 +198,7 @@ bool Pipeline::try_without_creases(const Flaws& before) {
   // Where there are more than two faults a face, nothing helps.
   if (!(before.are_hopeless(faces) || are_too_fine) || before.faults.all() > 2 * faces)
     return false;
-  if (!may_leave_out_creases()) return false;
-  const auto on_rim = rim_vertices(surface_, context_);
-  const auto is_inside = [&](Index v) { return on_rim[v] == 0; };
-  if (std::ranges::none_of(features_.vertices, is_inside)) return false;
+  if (!follows_creases()) return false;
   const auto is_better = [&] { return 2 * flaws(0).faults.all() < before.faults.all(); };
   // Those that are everywhere, as steps of voxels are, are no better where some are left. Of 23
   // parts of machines, lines of one take more.

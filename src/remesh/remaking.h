@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -20,9 +21,10 @@ struct Made {
   std::vector<std::string> notes;  // of the input, before there were faces
   Mesh seamed;                     // the input, if seams may be joined; else empty
   bool has_marks;                  // besides those of creases that were found
-  bool is_without_creases;         // as faces could not follow them
-  bool is_without_some_creases;    // but not without all
+  double room_for_creases;         // those with less were left out (see Pipeline)
+  bool follows_creases;            // that nobody asked for; only told if faces are inverted
 
+  bool is_without_creases() const { return std::isinf(room_for_creases); }
   /// Whether so many faces pass through each other that little can be seen of what the surface is:
   /// fewer are no reason to change it.
   bool has_many_crossings() const {
@@ -66,7 +68,7 @@ class Remaking {
   void keep_if_better(Made other);
 
   /// From now on those of other surfaces have creases if there are any now.
-  void keep_creases() { keeps_creases_ = !made_.is_without_creases; }
+  void keep_creases() { keeps_creases_ = !made_.is_without_creases(); }
 
   /// At the end: the report has the times of all.
   void report_times() { made_.result.report.stages = std::move(times_); }

@@ -1,12 +1,13 @@
 #include "remesh/try_no_creases.h"
 
+#include <limits>
 #include <utility>
 
 namespace meshgrain {
 
 void try_no_creases(Made& made, const RemeshOptions& options, const Make& make,
                     const Context& context) {
-  if (!made.is_without_some_creases || made.faults.inverted == 0 || !may_remake(options)) return;
+  if (!made.follows_creases || made.faults.inverted == 0 || !may_remake(options)) return;
   Remaking remaking(made, options, make, context);
   RemeshOptions without = remaking.options();
   without.features.creases = Creases::none;
@@ -17,7 +18,8 @@ void try_no_creases(Made& made, const RemeshOptions& options, const Make& make,
       made.has_marks ? "without creases and marked edges: faces of this size that follow them "
                        "would be inverted"
                      : "without creases: faces of this size that follow them would be inverted");
-  other.is_without_creases = true;
+  other.follows_creases = false;
+  other.room_for_creases = std::numeric_limits<double>::infinity();
   remaking.keep_if_better(std::move(other));
   remaking.report_times();
 }

@@ -65,12 +65,27 @@ class SimplerTopology {
           static_cast<double>(closed) > considerably * static_cast<double>(closed_before);
       if (!are_more) continue;
       closed_before = closed;
-      remaking_.keep_if_better(made_of(
-          std::move(surface), before,
-          fmt::format("closed {} {}: faces of this size around {} would be inverted or "
-                      "pass through each other",
-                      closed, closed == 1 ? "tunnel" : "tunnels", closed == 1 ? "it" : "them")));
+      keep_if_better(std::move(surface), before, closed);
     }
+  }
+
+  /// Or without creases, if it follows some and has inverted faces.
+  void keep_if_better(Mesh surface, const Made& before, std::size_t closed) {
+    const auto note = [&](const char* also) {
+      return fmt::format(
+          "closed {} {}{}: faces of this size around {} would be inverted or pass through each "
+          "other",
+          closed, closed == 1 ? "tunnel" : "tunnels", also, closed == 1 ? "it" : "them");
+    };
+    Made other = made_of(surface, before, note(""));
+    const bool creases_may_go = other.follows_creases && other.faults.inverted > 0;
+    remaking_.keep_if_better(std::move(other));
+    if (!creases_may_go || made_.faults.inverted == 0) return;
+    RemeshOptions without = remaking_.options();
+    without.features.creases = Creases::none;
+    const char* also =
+        before.has_marks ? ", without creases and marked edges" : ", without creases";
+    remaking_.keep_if_better(remaking_.made_of(std::move(surface), without, before, note(also)));
   }
 
   Made made_of(Mesh surface, const Made& before, const std::string& note) {
