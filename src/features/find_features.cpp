@@ -44,10 +44,15 @@ Edges sharper_than(double degrees, const RimAndSharpEdges& found) {
 
 Edges creases_by_themselves(const Mesh& mesh, const RimAndSharpEdges& found, double edge_length,
                             const Context& context) {
-  if (Edges creases = mechanical_creases(mesh, found, context); !creases.empty()) return creases;
-  constexpr double sharp = 40;  // degrees
-  if (!is_rounded_part(mesh, found, sharp, context)) return {};
-  return leave_out_fragments(mesh, found.rim, sharper_than(sharp, found), edge_length);
+  switch (kind_of_surface(mesh, found, context)) {
+    case SurfaceKind::mechanical_part:
+      return mechanical_creases(mesh, found.sharp, context);
+    case SurfaceKind::rounded_part:
+      return leave_out_fragments(mesh, found.rim, sharper_than(sharp_degrees, found), edge_length);
+    case SurfaceKind::sculpture:
+      break;
+  }
+  return {};
 }
 
 /// The edges of a sculpture that are as sharp as was asked for are mostly of detail, which nobody
@@ -55,7 +60,7 @@ Edges creases_by_themselves(const Mesh& mesh, const RimAndSharpEdges& found, dou
 Edges creases_by_angle(const Mesh& mesh, const RimAndSharpEdges& found, double degrees,
                        double edge_length, const Context& context) {
   Edges creases = sharper_than(degrees, found);
-  if (!mechanical_creases(mesh, found, context).empty()) return creases;
+  if (kind_of_surface(mesh, found, context) == SurfaceKind::mechanical_part) return creases;
   return leave_out_fragments(mesh, found.rim, std::move(creases), edge_length);
 }
 

@@ -14,7 +14,7 @@
 namespace meshgrain {
 namespace {
 
-constexpr double sharp = 40, less_sharp = 30;  // degrees
+constexpr double less_sharp_degrees = 30;
 
 double cosine_of(double degrees) {
   return std::cos(degrees * std::numbers::pi / 180);
@@ -34,30 +34,12 @@ double length_above(const Mesh& mesh, std::span<const SharpEdge> edges, double d
   return sum_over_ranges(edges.size(), length, context);
 }
 
-bool is_mechanical(const Mesh& mesh, const RimAndSharpEdges& edges, const Context& context) {
-  // Of sculptures and scans the clean share is hardly ever more than a half.
-  constexpr double clean = 0.8, clean_enough = 0.6;
-  constexpr double clearly = 4;
-  const auto clean_share = [&](double degrees) {
-    return share_of_clean_lines(mesh, edges, degrees);
-  };
-  const auto [clear, doubtful] = crease_lengths(mesh, edges.sharp, context);
-  if (clear > clearly * doubtful) return true;  // even where noise has made the lines ragged
-  const double share = clean_share(sharp);
-  if (share > clean) return true;
-  // Of a sculpture with few large faces most edges may be sharp, but then they are no clean lines.
-  // On a surface around voxels hardly any are, but for all of its small steps together.
-  constexpr double too_ragged = 0.05;
-  return clear > doubtful && share > too_ragged &&
-         std::max(share, clean_share(less_sharp)) > clean_enough;
-}
-
 /// Flags of those sharper than an angle at which it matters least.
 std::vector<std::uint8_t> above_best_threshold(const Mesh& mesh, std::span<const SharpEdge> edges,
                                                const Context& context) {
-  double threshold = sharp, least = std::numeric_limits<double>::infinity();
+  double threshold = sharp_degrees, least = std::numeric_limits<double>::infinity();
   constexpr double lowest = 20, window = 1.25, step = 2;
-  for (double degrees = sharp; degrees >= lowest; degrees -= step) {
+  for (double degrees = sharp_degrees; degrees >= lowest; degrees -= step) {
     const double doubtful = length_above(mesh, edges, degrees / window, context) -
                             length_above(mesh, edges, degrees * window, context);
     if (doubtful >= least) continue;
@@ -70,9 +52,9 @@ std::vector<std::uint8_t> above_best_threshold(const Mesh& mesh, std::span<const
   return result;
 }
 
-/// Of all edges sharper than that, by their length.
-double share_that_sticks_out(const Mesh& mesh, double degrees, const Context& context) {
-  const double cosine = cosine_of(degrees);
+/// Of all sharp edges, by their length.
+double share_that_sticks_out(const Mesh& mesh, const Context& context) {
+  const double cosine = cosine_of(sharp_degrees);
   const auto normal = [&](Index f) -> Vec3 {
     const Vec3& a = mesh.positions[mesh.faces[f][0]];
     const Vec3 b = mesh.positions[mesh.faces[f][1]] - a, c = mesh.positions[mesh.faces[f][2]] - a;
@@ -106,7 +88,7 @@ std::vector<std::array<Index, 2>> flagged(std::span<const SharpEdge> edges,
 
 CreaseLengths crease_lengths(const Mesh& mesh, std::span<const SharpEdge> edges,
                              const Context& context) {
-  const double clear = length_above(mesh, edges, sharp, context);
+  const double clear = length_above(mesh, edges, sharp_degrees, context);
   return {clear, length_above(mesh, edges, flat_degrees, context) - clear};
 }
 
@@ -117,21 +99,38 @@ std::vector<std::array<Index, 2>> clear_creases(const Mesh& mesh, std::span<cons
   return flagged(edges, above_best_threshold(mesh, edges, context));
 }
 
-bool is_rounded_part(const Mesh& mesh, const RimAndSharpEdges& edges, double degrees,
-                     const Context& context) {
+SurfaceKind kind_of_surface(const Mesh& mesh, const RimAndSharpEdges& edges,
+                            const Context& context) {
+  constexpr double clearly = 4;
+  const auto [clear, doubtful] = crease_lengths(mesh, edges.sharp, context);
+  // Even where noise has made the lines ragged.
+  if (clear > clearly * doubtful) return SurfaceKind::mechanical_part;
+  // Of sculptures and scans the clean share is hardly ever more than a half.
+  constexpr double clean = 0.8, clean_enough = 0.6, partly_clean = 0.4;
+  const double share = share_of_clean_lines(mesh, edges, sharp_degrees);
+  if (share > clean) return SurfaceKind::mechanical_part;
+  // Of a sculpture with few large faces most edges may be sharp, but then they are no clean lines.
+  // On a surface around voxels hardly any are, but for all of its small steps together.
+  constexpr double too_ragged = 0.05;
+  const auto share_of_less_sharp = [&] {
+    return share_of_clean_lines(mesh, edges, less_sharp_degrees);
+  };
+  if (clear > doubtful && share > too_ragged &&
+      (share > clean_enough || share_of_less_sharp() > clean_enough)) {
+    return SurfaceKind::mechanical_part;
+  }
   // Measured on 670 parts, and on 220 sculptures, scans and bones.
-  constexpr double clean = 0.4, outer = 0.35;
-  return share_of_clean_lines(mesh, edges, degrees) > clean &&
-         share_that_sticks_out(mesh, degrees, context) > outer;
+  constexpr double outer = 0.35;
+  const bool is_part = share > partly_clean && share_that_sticks_out(mesh, context) > outer;
+  return is_part ? SurfaceKind::rounded_part : SurfaceKind::sculpture;
 }
 
 std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& mesh,
-                                                     const RimAndSharpEdges& edges,
+                                                     std::span<const SharpEdge> edges,
                                                      const Context& context) {
-  if (!is_mechanical(mesh, edges, context)) return {};
-  std::vector<std::uint8_t> is_crease = above_best_threshold(mesh, edges.sharp, context);
-  follow_fading_creases(mesh, edges.sharp, is_crease);
-  return flagged(edges.sharp, is_crease);
+  std::vector<std::uint8_t> is_crease = above_best_threshold(mesh, edges, context);
+  follow_fading_creases(mesh, edges, is_crease);
+  return flagged(edges, is_crease);
 }
 
 }  // namespace meshgrain

@@ -10,8 +10,8 @@
 
 namespace meshgrain {
 
-/// Below this edges are flat.
-inline constexpr double flat_degrees = 10;
+/// Below the one edges are flat, beyond the other they are sharp.
+inline constexpr double flat_degrees = 10, sharp_degrees = 40;
 
 /// How long the edges are that are sharp, and those that are neither sharp nor flat. `edges` are
 /// all that are not flat.
@@ -27,18 +27,21 @@ std::vector<std::array<Index, 2>> clear_creases(const Mesh& triangles,
                                                 std::span<const SharpEdge> edges, double clearly,
                                                 const Context& context);
 
-/// The creases of a mechanical part; nothing for a sculpture or a scan, whose sharp edges are
-/// detail or noise. In a part most edges are either nearly flat or creases; or, where coarse facets
-/// round it, its sharp edges make clean lines. `edges` are all that are not flat.
-std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& triangles,
-                                                     const RimAndSharpEdges& edges,
-                                                     const Context& context);
+/// What a surface may be by its edges that are not flat.
+enum class SurfaceKind {
+  mechanical_part,  ///< Most are either nearly flat or creases; or, where coarse facets round it,
+                    ///< its sharp edges make clean lines.
+  rounded_part,     ///< There is much of anything between its creases and what is nearly flat, but
+                    ///< many sharp edges lie on clean lines, and a good part of them stick out: the
+                    ///< seams where bodies of a sculpture meet are clean, too, but hollow.
+  sculpture,        ///< Or a scan: sharp edges are detail or noise.
+};
+SurfaceKind kind_of_surface(const Mesh& triangles, const RimAndSharpEdges& edges,
+                            const Context& context);
 
-/// Whether a surface without these is a part all the same, so rounded that between its creases and
-/// what is nearly flat there is much of anything: most edges sharper than `degrees` lie on clean
-/// lines then, and a good part of them stick out. The seams where bodies of a sculpture meet are
-/// clean, too, but hollow. `edges` are all that are not flat.
-bool is_rounded_part(const Mesh& triangles, const RimAndSharpEdges& edges, double degrees,
-                     const Context& context);
+/// The creases of a mechanical part.
+std::vector<std::array<Index, 2>> mechanical_creases(const Mesh& triangles,
+                                                     std::span<const SharpEdge> edges,
+                                                     const Context& context);
 
 }  // namespace meshgrain

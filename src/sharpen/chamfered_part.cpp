@@ -95,7 +95,7 @@ bool is_chamfered_part(const Mesh& triangles, std::span<const Mesh> samples,
   const auto vertices = static_cast<double>(triangles.positions.size());
   if (static_cast<double>(rough.all) > most_rough * vertices) return false;
   const RimAndSharpEdges edges = rim_and_sharp_edges(triangles, flat_degrees, context);
-  return mechanical_creases(triangles, edges, context).empty();
+  return kind_of_surface(triangles, edges, context) != SurfaceKind::mechanical_part;
 }
 
 }  // namespace meshgrain

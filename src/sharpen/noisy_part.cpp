@@ -98,7 +98,7 @@ bool is_noisy_part(const Mesh& triangles, std::span<const Mesh, 2> samples,
   const RimAndSharpEdges edges = rim_and_sharp_edges(triangles, flat_degrees, context);
   const CreaseLengths as_it_is = crease_lengths(triangles, edges.sharp, context);
   return as_it_is.clear <= as_it_is.doubtful &&
-         mechanical_creases(triangles, edges, context).empty();
+         kind_of_surface(triangles, edges, context) != SurfaceKind::mechanical_part;
 }
 
 std::vector<std::array<Index, 2>> take_out_noise(Mesh& triangles, double shortest,
