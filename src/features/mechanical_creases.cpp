@@ -106,7 +106,7 @@ SurfaceKind kind_of_surface(const Mesh& mesh, const RimAndSharpEdges& edges,
   // Even where noise has made the lines ragged.
   if (clear > clearly * doubtful) return SurfaceKind::mechanical_part;
   // Of sculptures and scans the clean share is hardly ever more than a half.
-  constexpr double clean = 0.8, clean_enough = 0.6, partly_clean = 0.4;
+  constexpr double clean = 0.8, clean_enough = 0.6, partly_clean = 0.45;
   const double share = share_of_clean_lines(mesh, edges, sharp_degrees);
   if (share > clean) return SurfaceKind::mechanical_part;
   // Of a sculpture with few large faces most edges may be sharp, but then they are no clean lines.
@@ -119,7 +119,7 @@ SurfaceKind kind_of_surface(const Mesh& mesh, const RimAndSharpEdges& edges,
       (share > clean_enough || share_of_less_sharp() > clean_enough)) {
     return SurfaceKind::mechanical_part;
   }
-  // Measured on 670 parts, and on 220 sculptures, scans and bones.
+  // Measured on 670 parts, and on 220 sculptures, scans, bones and a car's body.
   constexpr double outer = 0.35;
   const bool is_part = share > partly_clean && share_that_sticks_out(mesh, context) > outer;
   return is_part ? SurfaceKind::rounded_part : SurfaceKind::sculpture;
