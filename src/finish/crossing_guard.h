@@ -17,6 +17,8 @@ class CrossingGuard {
  public:
   /// The mesh and the context must outlive this.
   CrossingGuard(Mesh& mesh, std::span<const Index> faces, const Context& context);
+  CrossingGuard(const CrossingGuard&) = delete;
+  CrossingGuard& operator=(const CrossingGuard&) = delete;
 
   /// Puts the vertices of faces that pass through others, and did not at the last call, back to
   /// where they were then.
