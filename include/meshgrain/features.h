@@ -31,7 +31,8 @@ struct FeatureLines {
 
 /// Which edges are creases, beside those that are marked (Mesh::marked_edges).
 enum class Creases {
-  automatic,  ///< Of mechanical parts: edges clearly sharper than all that are meant to be smooth.
+  automatic,  ///< Of mechanical parts: edges clearly sharper than all that are meant to be smooth;
+              ///< of parts too rounded to tell these apart, lines of sharp ones as by_angle.
   by_angle,   ///< Edges that are sharp enough; of a sculpture, lines of them that faces can follow.
   marked,     ///< Only edges that are marked (Mesh::marked_edges).
   none,       ///< Not even marked edges.
