@@ -1,11 +1,8 @@
 #include "features/mechanical_creases.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 
 #include "features/clean_lines.h"
 #include "features/fading_creases.h"
@@ -16,13 +13,9 @@ namespace {
 
 constexpr double less_sharp_degrees = 30;
 
-double cosine_of(double degrees) {
-  return std::cos(degrees * std::numbers::pi / 180);
-}
-
 double length_above(const Mesh& mesh, std::span<const SharpEdge> edges, double degrees,
                     const Context& context) {
-  const double cosine = cosine_of(degrees);
+  const double cosine = sharp_cosine(degrees);
   const auto length = [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (const auto& [ends, cosine_here] : edges.subspan(begin, end - begin)) {
@@ -47,14 +40,14 @@ std::vector<std::uint8_t> above_best_threshold(const Mesh& mesh, std::span<const
     threshold = degrees;
   }
   std::vector<std::uint8_t> result;
-  const double cosine = cosine_of(threshold);
+  const double cosine = sharp_cosine(threshold);
   for (const SharpEdge& edge : edges) result.push_back(edge.cosine < cosine);
   return result;
 }
 
 /// Of all sharp edges, by their length.
 double share_that_sticks_out(const Mesh& mesh, const Context& context) {
-  const double cosine = cosine_of(sharp_degrees);
+  const double cosine = sharp_cosine(sharp_degrees);
   const auto normal = [&](Index f) -> Vec3 {
     const Vec3& a = mesh.positions[mesh.faces[f][0]];
     const Vec3 b = mesh.positions[mesh.faces[f][1]] - a, c = mesh.positions[mesh.faces[f][2]] - a;

@@ -204,8 +204,8 @@ class Pipeline {
   /// what was before, and returns false, unless these are better.
   bool try_again(const std::function<bool()>& is_better, const std::function<void()>& change = {});
 
-  /// Without a look at creases. Returns false if the faces are crumpled, where that is asked, or
-  /// only compared: they have not been mended, then.
+  /// Without a look at creases. Returns false if the faces are crumpled, where that is asked: they
+  /// have not been mended, then.
   bool smooth_faces_unless(const std::function<bool()>& are_crumpled);
   /// Returns false if they are not worth mending, and have not been.
   bool smooth_faces_if(const std::function<bool()>& is_worth_mending);
@@ -354,7 +354,7 @@ class Pipeline {
   double room_for_creases_ = 0;        // see room_for_creases()
   static constexpr double no_creases = std::numeric_limits<double>::infinity();
   bool has_tried_without_creases_ = false;  // for the faces that there are
-  bool only_compares_ = false;              // faces, and mends none
+  bool only_compares_ = false;              // attempts, and mends none
   RoughFaces rough_;                        // of those that were smoothed last
   bool divides_borders_ = false;
   FeatureLines features_;

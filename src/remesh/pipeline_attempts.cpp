@@ -121,7 +121,7 @@ void Pipeline::smooth_faces() {
 
 bool Pipeline::smooth_faces_unless(const std::function<bool()>& are_crumpled) {
   constexpr int most_attempts = 3;
-  const bool may_try = may_make_others() && may_be_irregular() && !only_compares_;
+  const bool may_try = may_make_others() && may_be_irregular();
   Attempt best;
   LostSurface least;
   for (int attempt = 0; may_try && attempt < most_attempts; ++attempt) {
@@ -147,8 +147,9 @@ bool Pipeline::smooth_faces_unless(const std::function<bool()>& are_crumpled) {
     }
   }
   if (may_try) put_back(std::move(best));
-  if (only_compares_ || are_crumpled) rough_ = {extraction_, is_split_};
-  return smooth_faces_if([&] { return !only_compares_ && !(are_crumpled && are_crumpled()); });
+  if (!are_crumpled) return smooth_faces_if({});
+  rough_ = {extraction_, is_split_};
+  return smooth_faces_if([&] { return !are_crumpled(); });
 }
 
 void Pipeline::recover_lost_surface(const LostSurface& lost, Flaws& left) {
@@ -318,8 +319,12 @@ bool Pipeline::try_again(const std::function<bool()>& is_better,
   Attempt before = take_attempt();
   if (change) change();
   if (make_faces_again()) {
-    smooth_faces_unless({});
-    untwist_faces();
+    if (only_compares_) {
+      smooth_faces_unless([] { return true; });
+    } else {
+      smooth_faces_unless({});
+      untwist_faces();
+    }
     if (is_better()) return true;
   }
   put_back(std::move(before));

@@ -300,7 +300,7 @@ void Pipeline::finish_borders() {
 }
 
 void Pipeline::untwist_faces() {
-  if (only_compares_ || options_.smoothing == 0 || posy_of(options_.faces) != 4) return;
+  if (options_.smoothing == 0 || posy_of(options_.faces) != 4) return;
   const bool border_stays = keeps_border_ || !borders_.empty();
   stage_("smoothing", [&] { untwist(extraction_, graph().normals, border_stays, context_); });
 }

@@ -1,6 +1,7 @@
 #include "remesh/remaking.h"
 
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 namespace meshgrain {
@@ -39,6 +40,14 @@ Made Remaking::made_of(Mesh surface, const RemeshOptions& options, const Made& b
   other.notes.push_back(note);
   report.notes.insert(report.notes.begin(), other.notes.begin(), other.notes.end());
   times_.insert(times_.end(), report.stages.begin(), report.stages.end());
+  return other;
+}
+
+Made Remaking::made_without_creases(Mesh surface, const Made& before, const std::string& note) {
+  RemeshOptions without = options_;
+  without.features.creases = Creases::none;
+  Made other = made_of(std::move(surface), without, before, note);
+  other.room_for_creases = std::numeric_limits<double>::infinity();
   return other;
 }
 

@@ -64,6 +64,9 @@ class Remaking {
   Made made_of(Mesh surface, const RemeshOptions& options, const Made& before,
                const std::string& note);
 
+  /// The same with no creases, nor marked edges.
+  Made made_without_creases(Mesh surface, const Made& before, const std::string& note);
+
   /// If it has clearly fewer faults.
   void keep_if_better(Made other);
 

@@ -1,6 +1,5 @@
 #include "remesh/try_no_creases.h"
 
-#include <limits>
 #include <utility>
 
 namespace meshgrain {
@@ -9,18 +8,13 @@ void try_no_creases(Made& made, const RemeshOptions& options, const Make& make,
                     const Context& context) {
   if (!made.follows_creases || made.faults.inverted == 0 || !may_remake(options)) return;
   Remaking remaking(made, options, make, context);
-  RemeshOptions without = remaking.options();
-  without.features.creases = Creases::none;
   Mesh surface = made.result.fields.surface;
   if (!made.has_marks) surface.marked_edges.clear();  // those of creases that were found
-  Made other = remaking.made_of(
-      std::move(surface), without, made,
+  remaking.keep_if_better(remaking.made_without_creases(
+      std::move(surface), made,
       made.has_marks ? "without creases and marked edges: faces of this size that follow them "
                        "would be inverted"
-                     : "without creases: faces of this size that follow them would be inverted");
-  other.follows_creases = false;
-  other.room_for_creases = std::numeric_limits<double>::infinity();
-  remaking.keep_if_better(std::move(other));
+                     : "without creases: faces of this size that follow them would be inverted"));
   remaking.report_times();
 }
 

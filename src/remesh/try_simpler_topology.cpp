@@ -81,11 +81,10 @@ class SimplerTopology {
     const bool creases_may_go = other.follows_creases && other.faults.inverted > 0;
     remaking_.keep_if_better(std::move(other));
     if (!creases_may_go || made_.faults.inverted == 0) return;
-    RemeshOptions without = remaking_.options();
-    without.features.creases = Creases::none;
     const char* also =
         before.has_marks ? ", without creases and marked edges" : ", without creases";
-    remaking_.keep_if_better(remaking_.made_of(std::move(surface), without, before, note(also)));
+    remaking_.keep_if_better(
+        remaking_.made_without_creases(std::move(surface), before, note(also)));
   }
 
   Made made_of(Mesh surface, const Made& before, const std::string& note) {
