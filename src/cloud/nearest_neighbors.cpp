@@ -53,6 +53,7 @@ class Nearest {
   }
 
   float worstDist() const { return bound_; }
+  void sort() {}  // which versions from 1.6 on ask for
   bool full() const { return size_ == found_.size(); }
   std::size_t size() const { return size_; }
   Index operator[](std::size_t i) const { return found_[i].index; }
@@ -96,7 +97,7 @@ Neighborhoods nearest_neighbors(std::span<const Vec3> points, std::size_t k,
     Nearest nearest(k);
     for (std::size_t i = begin; i < end; ++i) {
       nearest.start(place[i]);
-      tree.findNeighbors(nearest, points[i].data(), nanoflann::SearchParams());
+      tree.findNeighbors(nearest, points[i].data(), {});
       for (std::size_t n = 0; n < nearest.size(); ++n)
         result.indices[i * k + n] = distinct[nearest[n]];
     }
