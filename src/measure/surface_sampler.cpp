@@ -5,15 +5,14 @@
 #include <cmath>
 #include <cstdint>
 
+#include "util/hash.h"
+
 namespace meshgrain {
 namespace {
 
-/// A number in [0, 1) that depends on `i` and `stream` alone (Steele et al. 2014, SplitMix64).
+/// A number in [0, 1) that depends on `i` and `stream`, one of three, alone.
 double random_number(std::uint64_t i, std::uint64_t stream) {
-  std::uint64_t x = (3 * i + stream + 1) * 0x9E3779B97F4A7C15u;
-  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
-  x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
-  return double((x ^ (x >> 31)) >> 11) * 0x1p-53;
+  return double(hash64(3 * i + stream) >> 11) * 0x1p-53;
 }
 
 }  // namespace
