@@ -44,7 +44,7 @@ def machine(times):
         "The most that it does, in thousands of millions a second, measured by",
         "`benchmarks/machine_benchmark.cpp`: bytes of memory (a triad over arrays larger than the",
         "caches), and fused multiplications and additions in single precision. (The solvers fuse none,",
-        "so that their bytes are the same everywhere: half of that is in their reach.)",
+        "so that their bytes are the same with all instruction sets: half of that is in their reach.)",
         *table(["", "1 thread", "all threads"],
                [["bytes", *rates("triad", "bytes/s")],
                 ["multiply-adds", *rates("multiply-add", "multiply-adds/s")]]),

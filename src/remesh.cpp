@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "remesh/target.h"
 #include "remesh/try_finer_faces.h"
 #include "remesh/try_no_creases.h"
+#include "remesh/try_pieces_apart.h"
 #include "remesh/try_simpler_topology.h"
 #include "symmetry/remesh_symmetric.h"
 
@@ -124,6 +126,7 @@ Made make(Mesh input, const RemeshOptions& options, const std::optional<Wanted>&
   Faults faults = pipeline.find_faults();
   const double side = pipeline.face_side();
   const bool has_marks = pipeline.has_marks() || pipeline.is_sharpened();
+  Cuts cuts = pipeline.cuts();
   const double room_for_creases = pipeline.room_for_creases();
   const bool follows_creases = faults.inverted > 0 && pipeline.follows_creases();
   return {std::move(pipeline).result(),
@@ -132,6 +135,7 @@ Made make(Mesh input, const RemeshOptions& options, const std::optional<Wanted>&
           std::move(notes),
           std::move(seamed),
           has_marks,
+          std::move(cuts),
           room_for_creases,
           follows_creases};
 }
@@ -146,11 +150,25 @@ RemeshResult remesh_half(Mesh input, const RemeshOptions& options, const Context
   return std::move(pipeline).result();
 }
 
+/// What cannot be made otherwise stays as it is.
+template <typename Way>
+void attempt(const Way& way, Made& made, const RemeshOptions& options, const Context& context) {
+  try {
+    way(made, options, make, context);
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error&) {  // such as that nothing is left of another surface
+  } catch (const std::bad_alloc&) {
+  }
+}
+
 RemeshResult remesh_whole(Mesh input, const RemeshOptions& options, const Context& context) {
   Made made = make(std::move(input), options, std::nullopt, context);
-  try_no_creases(made, options, make, context);
-  try_finer_faces(made, options, make, context);
-  try_simpler_topology(made, options, make, context);
+  attempt(try_no_creases, made, options, context);
+  attempt(try_finer_faces, made, options, context);
+  attempt(try_simpler_topology, made, options, context);
+  attempt(try_pieces_apart, made, options, context);
+  note_faults(made.result, made.faults);
   return std::move(made.result);
 }
 
@@ -193,7 +211,9 @@ std::vector<RemeshResult> remesh_levels(Mesh input, std::span<const std::size_t>
     level.face_count = face_counts[k];
     if (k != order.front()) pipeline.change_target(level);
     make_mesh(pipeline);
+    const Faults faults = pipeline.find_faults();
     levels[k] = pipeline.take_mesh(prepared);
+    note_faults(levels[k], faults);
     note_missed_count(levels[k], level);
   }
   return levels;

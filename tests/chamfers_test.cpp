@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "finish/crossings.h"
 #include "kept_creases.h"
 #include "made_volume.h"
+#include "measure/crossings.h"
 #include "mesh/border.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"

@@ -724,6 +724,12 @@ TEST_F(Cli, Stats) {
   EXPECT_GT(numbers["distance_from_input"]["max"].get<double>(), 0);
   EXPECT_GT(numbers["diagonal"].get<double>(), 0);
 
+  write("crossing.obj",
+        "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0.5 0.5 -1\nv 0.5 0.5 1\nv 3 3 0\nf 1 2 3\nf 4 5 6\n");
+  EXPECT_EQ(json::parse(run("stats --json --crossings crossing.obj").out)["crossings"], 1);
+  EXPECT_FALSE(json::parse(run("stats --json crossing.obj").out).contains("crossings"));
+  EXPECT_NE(run("stats --crossings crossing.obj").out.find("crossings"), std::string::npos);
+
   expect_refused("stats missing.obj", 1, "missing.obj");
   expect_refused("stats out.obj --against missing.obj", 1, "missing.obj");
   expect_refused("stats", 2, "MESH");

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "finish/crossing_guard.h"
-#include "finish/crossings.h"
+#include "measure/crossings.h"
 #include "meshgrain/shapes.h"
 
 namespace meshgrain {

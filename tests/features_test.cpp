@@ -15,11 +15,11 @@
 
 #include "features/fading_creases.h"
 #include "features/mechanical_creases.h"
-#include "finish/crossings.h"
 #include "kept_creases.h"
 #include "made_cells.h"
 #include "made_fields.h"
 #include "made_graph.h"
+#include "measure/crossings.h"
 #include "mesh/border.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
+#include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
-#include "finish/crossings.h"
+#include "measure/crossings.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
 #include "meshgrain/statistics.h"
@@ -83,6 +86,55 @@ TEST(FinerFaces, ABoreNarrowerThanAFaceStaysAndNothingCrosses) {
   }));
   EXPECT_EQ(result.report.input_vertices, ball.positions.size());
   EXPECT_TRUE(result.fields.surface.values.empty());
+}
+
+/// Gives a mesh around the origin a fin that stands on it, along edges from the vertex that is
+/// farthest in a direction: always on to the neighbour that is farthest along.
+void add_fin(Mesh& mesh, const Vec3& from, const Vec3& along, std::size_t edges) {
+  const auto farthest = [&](std::span<const Index> vertices, const Vec3& direction) {
+    return *std::ranges::max_element(vertices, {},
+                                     [&](Index v) { return mesh.positions[v].dot(direction); });
+  };
+  std::vector<Index> all(mesh.positions.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  std::vector<Index> foot{farthest(all, from)};
+  for (std::size_t k = 0; k < edges; ++k) {
+    std::vector<Index> neighbours;
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+      const auto face = std::as_const(mesh.faces)[f];
+      if (std::ranges::find(face, foot.back()) == face.end()) continue;
+      neighbours.insert(neighbours.end(), face.begin(), face.end());
+    }
+    foot.push_back(farthest(neighbours, along));
+  }
+  const auto top = static_cast<Index>(mesh.positions.size());
+  for (const Index v : foot) mesh.positions.push_back(1.5f * mesh.positions[v]);
+  for (Index k = 0; k < edges; ++k) {
+    mesh.faces.push_back({foot[k], foot[k + 1], top + k + 1});
+    mesh.faces.push_back({foot[k], top + k + 1, top + k});
+  }
+}
+
+/// Whatever is made in place of the first faces.
+TEST(FinerFaces, PiecesThatMeetOnEdgesStillMeet) {
+  Mesh ball = drilled_ball();
+  add_fin(ball, Vec3(-1, 0, 0), Vec3(0, 0, 1), 8);
+  ASSERT_EQ(mesh_statistics(ball).non_manifold_edges, 8u);
+  for (const auto& [count, creases, note] :
+       {std::tuple(500, Creases::automatic, "made faces smaller"),
+        {300, Creases::none, "closed 1 tunnel"}}) {
+    RemeshOptions options;
+    options.face_count = count;
+    options.features.creases = creases;
+    const RemeshResult result = remesh(ball, options);
+    EXPECT_TRUE(std::ranges::any_of(result.report.notes, [&](const std::string& given) {
+      return given.starts_with(note);
+    })) << note;
+    const MeshStatistics s = mesh_statistics(result.mesh);
+    EXPECT_EQ(s.components, 1u) << note;
+    EXPECT_GT(s.non_manifold_edges, 2u) << note;
+    EXPECT_EQ(s.inverted_quads, 0u) << note;
+  }
 }
 
 /// Edges that are a quarter as long around all of these bores would be twice as long elsewhere.

@@ -11,13 +11,13 @@
 #include <vector>
 
 #include "finish/bare_ends.h"
-#include "finish/crossings.h"
 #include "finish/fit_to_rails.h"
 #include "finish/fit_to_surface.h"
 #include "finish/go_around.h"
 #include "finish/placement.h"
 #include "finish/unfold.h"
 #include "finish/untwist.h"
+#include "measure/crossings.h"
 #include "mesh/vertex_faces.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
@@ -691,6 +691,19 @@ TEST(Finish, VerticesGoToRidges) {
     const Vec3 moved = place(extraction.mesh, 2) - place(even, 2);
     EXPECT_LT(moved.norm(), 0.02f / coarse);
   }
+}
+
+/// Where faces were the nodes of the graph, vertices are finished over the vertices all the same.
+TEST(Smooth, ReachesTheTipsOfASpindleOverAGraphOfFaces) {
+  Mesh spindle = sample_shape("sphere");
+  for (Vec3& p : spindle.positions) p = p.cwiseProduct(Vec3(1, 0.1f, 0.1f));
+  RemeshOptions options;
+  options.face_count = 300;
+  options.graph.nodes = GraphNodes::faces;
+  const Mesh result = remesh(spindle, options).mesh;
+  const MeshStatistics s = mesh_statistics(result);
+  EXPECT_EQ(s.inverted_quads, 0u);
+  EXPECT_LT(surface_distance(spindle, result, s.edge_mean).max, 1.5);
 }
 
 }  // namespace

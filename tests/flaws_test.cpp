@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "remesh/notes.h"
+
 namespace meshgrain {
 namespace {
 
@@ -33,6 +35,23 @@ TEST(FaultCounts, AreNeverBothFewerAndFarMore) {
       }
     }
   }
+}
+
+TEST(Notes, TellOfFaultsThatAreLeft) {
+  const auto notes = [](const FaultCounts& faults) {
+    RemeshResult result;
+    note_faults(result, faults);
+    return result.report.notes;
+  };
+  EXPECT_TRUE(notes({}).empty());
+  EXPECT_EQ(notes({1, 0}).at(0),
+            "could not avoid 1 inverted quad: more and smaller faces may help");
+  EXPECT_EQ(notes({0, 1}).at(0),
+            "could not avoid a pair of faces that pass through each other: more and smaller faces "
+            "may help");
+  EXPECT_EQ(notes({2, 30}).at(0),
+            "could not avoid 2 inverted quads, and 30 pairs of faces that pass through each other: "
+            "more and smaller faces may help");
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "finish/crossings.h"
+#include "measure/crossings.h"
 #include "mesh/border.h"
 #include "meshgrain/clean.h"
 #include "meshgrain/error.h"

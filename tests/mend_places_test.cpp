@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "finish/bad_places.h"
-#include "finish/crossings.h"
 #include "made_grid.h"
+#include "measure/crossings.h"
 #include "meshgrain/graph.h"
 #include "meshgrain/shapes.h"
 #include "meshgrain/statistics.h"

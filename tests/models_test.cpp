@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-#include "finish/crossings.h"
+#include "measure/crossings.h"
 #include "meshgrain/meshgrain.h"
 #include "same_topology.h"
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "finish/crossings.h"
+#include "measure/crossings.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/statistics.h"
 #include "meshgrain/triangulate.h"

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "finish/crossings.h"
 #include "made_cells.h"
 #include "made_fields.h"
+#include "measure/crossings.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
 #include "meshgrain/statistics.h"

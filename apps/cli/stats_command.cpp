@@ -49,6 +49,7 @@ std::string kinds(const MeshStatistics& s) {
 
 void print(const std::string& name, const MeshStatistics& s,
            const std::optional<std::size_t>& of_orientation,
+           const std::optional<std::size_t>& crossings,
            const std::optional<Comparison>& comparison) {
   fmt::print("{}\n\n", name);
   line("vertices", with_commas(s.vertices));
@@ -72,6 +73,7 @@ void print(const std::string& name, const MeshStatistics& s,
   line("non-manifold vertices", with_commas(s.non_manifold_vertices));
   line("isolated vertices", with_commas(s.isolated_vertices));
   line("inverted quads", with_commas(s.inverted_quads));
+  if (crossings) line("crossings", with_commas(*crossings), "pairs of faces");
   if (s.quads > 0) {
     line("scaled Jacobian",
          fmt::format("least {:.3f}, first percentile {:.3f}", s.jacobian_min, s.jacobian_p01));
@@ -101,7 +103,7 @@ void print(const std::string& name, const MeshStatistics& s,
 
 void stats_command(int argc, char** argv) {
   std::string path, against, fields_path;
-  bool as_json = false;
+  bool as_json = false, with_crossings = false;
   CLI::App app(
       "Prints the figures of a mesh. Areas are relative to the mean area; singularities are "
       "irregular\n"
@@ -115,6 +117,8 @@ void stats_command(int argc, char** argv) {
       ->type_name("INPUT");
   app.add_option("--fields", fields_path, "also the singularities of the orientation field in here")
       ->type_name("FILE");
+  app.add_flag("--crossings", with_crossings,
+               "also how many pairs of faces pass through each other");
   app.add_flag("--json", as_json, "print JSON instead");
   if (!parse(app, argc, argv)) return;
 
@@ -136,6 +140,8 @@ void stats_command(int argc, char** argv) {
                                                  fields.orientation, context)
                            .size();
     }
+    std::optional<std::size_t> crossings;
+    if (with_crossings) crossings = find_crossings(mesh, context).size();
     std::optional<Comparison> comparison;
     if (!against.empty()) {
       const Mesh input = read_mesh(against, {}, context);
@@ -145,9 +151,10 @@ void stats_command(int argc, char** argv) {
       comparison->from_input = surface_distance(input, mesh, comparison->diagonal, 100000, context);
       if (!input.is_point_cloud()) comparison->lines = kept_lines(triangulate(input), mesh);
     }
-    if (!as_json) return print(file_name(path), statistics, of_orientation, comparison);
+    if (!as_json) return print(file_name(path), statistics, of_orientation, crossings, comparison);
     Json json = to_json(statistics);
     if (of_orientation) json["orientation_singularities"] = *of_orientation;
+    if (crossings) json["crossings"] = *crossings;
     if (comparison) {
       json["diagonal"] = comparison->diagonal;
       json["distance_to_input"] = to_json(comparison->to_input);

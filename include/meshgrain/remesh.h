@@ -91,7 +91,8 @@ struct RemeshReport {
   std::vector<std::string> notes;  ///< What was mended, left out or missed, a line each.
   std::size_t input_vertices = 0, input_faces = 0;
   std::size_t nodes = 0, edges = 0, levels = 0;
-  double edge_length = 0;
+  double edge_length = 0;  ///< Of the position field's lattice, in the mean: of pure quads mostly
+                           ///< twice that of their edges.
   std::optional<std::size_t> orientation_singularities, position_singularities;  ///< Meshes only.
   std::vector<EnergyRecord> orientation_energies, position_energies;
 };

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
@@ -39,6 +41,11 @@ struct MeshStatistics {
 };
 
 MeshStatistics mesh_statistics(const Mesh& mesh);
+
+/// All pairs of faces that pass through each other, the lower number first, in increasing order. A
+/// quad counts with both of its diagonals; faces that share an edge, or touch, do not.
+std::vector<std::array<Index, 2>> find_crossings(const Mesh& mesh,
+                                                 const Context& context = Context());
 
 /// Distances from points sampled on one surface to another.
 struct SurfaceDistance {

@@ -47,10 +47,6 @@ std::span<const BorderLoops::Place> BorderLoops::places_of(Index vertex) const {
   return {found.begin(), found.end()};
 }
 
-std::vector<std::uint8_t> rim_vertices(const Mesh& mesh, const Context& context) {
-  return mark_ends(rim_edges(mesh, context), mesh.positions.size());
-}
-
 BorderLoops find_border_loops(const Mesh& surface, std::span<const std::uint8_t> locked,
                               const Context& context) {
   BorderLoops result;

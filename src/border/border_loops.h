@@ -30,9 +30,6 @@ struct BorderLoops {
   std::span<const Place> places_of(Index vertex) const;
 };
 
-/// The vertices on the border of a mesh, and on edges at which it is not manifold.
-std::vector<std::uint8_t> rim_vertices(const Mesh& mesh, const Context& context);
-
 /// The borders of a surface, cut where it is not manifold, that have at least three vertices of
 /// those that are `locked` (a flag a vertex).
 BorderLoops find_border_loops(const Mesh& surface, std::span<const std::uint8_t> locked,

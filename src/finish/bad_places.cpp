@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "finish/crossings.h"
+#include "measure/crossings.h"
 #include "util/sort_unique.h"
 
 namespace meshgrain {

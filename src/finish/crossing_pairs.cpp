@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "finish/crossings.h"
+#include "measure/crossings.h"
 
 namespace meshgrain {
 

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "finish/crossings.h"
-#include "finish/face_shape.h"
+#include "measure/crossings.h"
+#include "measure/face_shape.h"
 
 namespace meshgrain {
 namespace {

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "field/rosy.h"
-#include "finish/crossings.h"
-#include "finish/face_shape.h"
+#include "measure/crossings.h"
+#include "measure/face_shape.h"
 #include "util/sort_unique.h"
 #include "util/sum.h"
 

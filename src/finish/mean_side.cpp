@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "finish/face_shape.h"
+#include "measure/face_shape.h"
 #include "util/sum.h"
 
 namespace meshgrain {

@@ -10,9 +10,9 @@
 
 #include "finish/bad_places.h"
 #include "finish/crossing_pairs.h"
-#include "finish/crossings.h"
-#include "finish/face_shape.h"
 #include "finish/surface_crossings.h"
+#include "measure/crossings.h"
+#include "measure/face_shape.h"
 #include "mesh/border.h"
 #include "util/shortened.h"
 #include "util/sort_unique.h"

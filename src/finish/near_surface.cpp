@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "finish/face_shape.h"
+#include "measure/face_shape.h"
 #include "util/indices.h"
 
 namespace meshgrain {

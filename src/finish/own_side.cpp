@@ -11,10 +11,10 @@
 
 #include "field/rosy.h"
 #include "finish/crossing_guard.h"
-#include "finish/crossings.h"
-#include "finish/face_shape.h"
 #include "finish/near_surface.h"
 #include "finish/vertex_batches.h"
+#include "measure/crossings.h"
+#include "measure/face_shape.h"
 #include "mesh/box_cells.h"
 #include "util/indices.h"
 #include "util/sort_unique.h"

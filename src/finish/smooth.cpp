@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "finish/bare_ends.h"
-#include "finish/face_shape.h"
 #include "finish/fit_to_surface.h"
 #include "finish/local_search.h"
 #include "finish/mean_side.h"
@@ -17,6 +16,7 @@
 #include "finish/small_holes.h"
 #include "finish/unfold.h"
 #include "finish/untangle.h"
+#include "measure/face_shape.h"
 #include "meshgrain/surface.h"
 #include "util/sort_unique.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "finish/crossings.h"
+#include "measure/crossings.h"
 #include "mesh/part.h"
 
 namespace meshgrain {

@@ -4,7 +4,7 @@
 #include <span>
 #include <utility>
 
-#include "finish/face_shape.h"
+#include "measure/face_shape.h"
 #include "util/sort_unique.h"
 
 namespace meshgrain {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "finish/crossings.h"
-#include "finish/face_shape.h"
+#include "measure/crossings.h"
+#include "measure/face_shape.h"
 #include "mesh/border.h"
 #include "mesh/vertex_faces.h"
 #include "util/indices.h"

@@ -1,19 +1,16 @@
-#include "finish/crossings.h"
+#include "measure/crossings.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <span>
 #include <vector>
 
+#include "measure/face_grid.h"
 #include "util/collect.h"
-#include "util/hash.h"
-#include "util/sum.h"
 
 namespace meshgrain {
 namespace {
@@ -200,114 +197,33 @@ void add_depths(const Mesh& mesh, Index f, Index g, const Add& add) {
   }
 }
 
-/// The faces of a mesh by the cells of a grid that their boxes touch.
-class FaceGrid {
- public:
-  FaceGrid(const Mesh& mesh, const Context& context);
-
-  /// Of cells by their hashes.
-  std::size_t buckets() const { return starts_.empty() ? 0 : starts_.size() - 1; }
-
-  /// Calls body(f, g), f < g, for pairs of faces whose boxes meet in a bucket: for each in one
-  /// only.
-  template <typename Body>
-  void for_each_pair(std::size_t bucket, const Body& body) const {
-    for (Index e = starts_[bucket]; e < starts_[bucket + 1]; ++e) {
-      for (Index o = e + 1; o < starts_[bucket + 1]; ++o) {
-        const auto& [cell, f] = entries_[e];
-        const auto& [other_cell, g] = entries_[o];
-        if (cell != other_cell || !boxes_[f].intersects(boxes_[g])) continue;
-        // Two meet in the cell of the highest of their low corners.
-        if (cell == key(lows_[f].cwiseMax(lows_[g]))) body(f, g);
-      }
-    }
-  }
-
- private:
-  using Cell = Eigen::Array<std::uint32_t, 3, 1>;
-  struct Entry {
-    std::uint64_t cell;
-    Index face;
-  };
-
-  static std::uint64_t key(const Cell& cell) {
-    return (std::uint64_t{cell[0]} << 42) | (std::uint64_t{cell[1]} << 21) | cell[2];
-  }
-
-  std::vector<Eigen::AlignedBox3f> boxes_;
-  std::vector<Cell> lows_, highs_;  // the cells of the boxes' corners
-  std::vector<Index> starts_;       // of the buckets
-  std::vector<Entry> entries_;      // bucket after bucket, by increasing face
-};
-
-FaceGrid::FaceGrid(const Mesh& mesh, const Context& context) : boxes_(mesh.faces.size()) {
-  struct Extent {
-    Vec3 lowest = Vec3::Constant(std::numeric_limits<float>::infinity());
-    double sizes = 0;
-
-    Extent operator+(const Extent& o) const { return {lowest.cwiseMin(o.lowest), sizes + o.sizes}; }
-  };
-  const std::size_t count = boxes_.size();
-  const auto [lowest, sizes] = sum_over_ranges(
-      count,
-      [&](std::size_t begin, std::size_t end) {
-        Extent extent;
-        for (std::size_t f = begin; f < end; ++f) {
-          boxes_[f] = face_box(mesh, static_cast<Index>(f));
-          extent = extent + Extent{boxes_[f].min(), boxes_[f].sizes().maxCoeff()};
-        }
-        return extent;
-      },
-      context);
-  if (!(sizes > 0)) return;
-  const double cells_a_length = static_cast<double>(count) / (1.5 * sizes);
-  const auto cell = [&](const Vec3& p) -> Cell {
-    return ((p - lowest).cast<double>() * cells_a_length).cast<std::uint32_t>();
-  };
-  lows_.resize(count);
-  highs_.resize(count);
-  for (std::size_t f = 0; f < count; ++f) {
-    lows_[f] = cell(boxes_[f].min());
-    highs_[f] = cell(boxes_[f].max());
-  }
-  const auto bits = static_cast<int>(std::bit_width(count));
-  const auto for_each_entry = [&](const auto& body) {
-    for (auto f = static_cast<Index>(count); f-- > 0;) {
-      for (auto x = lows_[f][0]; x <= highs_[f][0]; ++x) {
-        for (auto y = lows_[f][1]; y <= highs_[f][1]; ++y) {
-          for (auto z = lows_[f][2]; z <= highs_[f][2]; ++z) {
-            const std::uint64_t at = key(Cell(x, y, z));
-            body(hash64(at) >> (64 - bits), Entry{at, f});
-          }
-        }
-      }
-    }
-  };
-  // A counting sort: starts_ are first the ends, and move down as the entries come in.
-  starts_.assign((std::size_t{1} << bits) + 1, 0);
-  for_each_entry([&](std::uint64_t bucket, const Entry&) { ++starts_[bucket]; });
-  std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
-  entries_.resize(starts_.back());
-  for_each_entry(
-      [&](std::uint64_t bucket, const Entry& entry) { entries_[--starts_[bucket]] = entry; });
-}
-
 /// Pairs of faces whose boxes meet and that are wanted, the lower number first, in increasing
 /// order.
 template <typename IsWanted>
 std::vector<std::array<Index, 2>> find_pairs(const Mesh& mesh, const Context& context,
                                              const IsWanted& is_wanted) {
   const FaceGrid grid(mesh, context);
-  auto result = collect<std::array<Index, 2>>(
-      grid.buckets(),
-      [&](std::size_t begin, std::size_t end, std::vector<std::array<Index, 2>>& found) {
-        for (std::size_t bucket = begin; bucket < end; ++bucket) {
-          grid.for_each_pair(bucket, [&](Index f, Index g) {
-            if (is_wanted(f, g)) found.push_back({f, g});
-          });
-        }
-      },
-      context);
+  const auto result_of = [&](std::size_t count, const auto& for_each_pair) {
+    return collect<std::array<Index, 2>>(
+        count,
+        [&](std::size_t begin, std::size_t end, std::vector<std::array<Index, 2>>& found) {
+          for (std::size_t k = begin; k < end; ++k) {
+            for_each_pair(k, [&](Index f, Index g) {
+              if (is_wanted(f, g)) found.push_back({f, g});
+            });
+          }
+        },
+        context);
+  };
+  auto result = result_of(grid.buckets(), [&](std::size_t bucket, const auto& body) {
+    grid.for_each_pair(bucket, body);
+  });
+  if (grid.has_large_faces()) {
+    const auto more = result_of(mesh.faces.size(), [&](std::size_t f, const auto& body) {
+      grid.for_each_larger(static_cast<Index>(f), body);
+    });
+    result.insert(result.end(), more.begin(), more.end());
+  }
   std::sort(result.begin(), result.end());
   return result;
 }
@@ -327,12 +243,6 @@ bool cross_if_near(const Mesh& mesh, Index f, Index g) {
   bool any = false;
   add_depths(mesh, f, g, [&](double depth) { return !(any = depth > 0); });
   return any;
-}
-
-Eigen::AlignedBox3f face_box(const Mesh& mesh, Index f) {
-  Eigen::AlignedBox3f box;
-  for (const Index v : mesh.faces[f]) box.extend(mesh.positions[v]);
-  return box;
 }
 
 double penetration(const Mesh& mesh, Index f, Index g) {

@@ -7,12 +7,12 @@
 #include <span>
 #include <vector>
 
+#include "measure/face_grid.h"
 #include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
+#include "meshgrain/statistics.h"
 
 namespace meshgrain {
-
-Eigen::AlignedBox3f face_box(const Mesh& mesh, Index f);
 
 /// How deep two faces pass through each other, in units of length: 0 if they do not, or share an
 /// edge. A quad counts with both of its diagonals.
@@ -22,10 +22,7 @@ double penetration_of_near(const Mesh& mesh, Index f, Index g);
 /// Whether that is more than 0.
 bool cross_if_near(const Mesh& mesh, Index f, Index g);
 
-/// All pairs of faces that pass through each other, the lower number first, in increasing order.
-std::vector<std::array<Index, 2>> find_crossings(const Mesh& mesh, const Context& context);
-
-/// Of them those with one or both of the faces that are marked, by one flag a face.
+/// Of find_crossings() those with one or both of the faces that are marked, by one flag a face.
 std::vector<std::array<Index, 2>> find_crossings_of(const Mesh& mesh,
                                                     std::span<const std::uint8_t> marked,
                                                     const Context& context);

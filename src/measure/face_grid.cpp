@@ -1,4 +1,4 @@
-#include "finish/face_grid.h"
+#include "measure/face_grid.h"
 
 #include <bit>
 #include <limits>

@@ -130,6 +130,10 @@ std::vector<std::uint8_t> mark_ends(std::span<const std::array<Index, 2>> edges,
   return result;
 }
 
+std::vector<std::uint8_t> rim_vertices(const Mesh& mesh, const Context& context) {
+  return mark_ends(rim_edges(mesh, context), mesh.positions.size());
+}
+
 std::vector<std::array<Index, 2>> border_edges(const Mesh& mesh, const Context& context) {
   return select_odd_edges<Edge>(
       mesh,

@@ -35,6 +35,9 @@ std::vector<std::array<Index, 2>> branch_edges(const Mesh& mesh,
 std::vector<std::uint8_t> mark_ends(std::span<const std::array<Index, 2>> edges,
                                     std::size_t vertices);
 
+/// Of each vertex, whether it is on the border, or on an edge at which the mesh is not manifold.
+std::vector<std::uint8_t> rim_vertices(const Mesh& mesh, const Context& context);
+
 /// An edge between two faces of opposite direction, from the smaller index to the larger as `left`
 /// has it.
 struct InnerEdge {

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "finish/crossings.h"
+#include "measure/crossings.h"
 
 namespace meshgrain {
 

@@ -14,9 +14,9 @@
 #include "extract/extraction_map.h"
 #include "extract/face_repair.h"
 #include "extract/piece.h"
-#include "finish/crossings.h"
-#include "finish/face_shape.h"
 #include "finish/smooth.h"
+#include "measure/crossings.h"
+#include "measure/face_shape.h"
 #include "remesh/change_piece.h"
 
 namespace meshgrain {

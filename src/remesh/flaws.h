@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "finish/crossings.h"
+#include "measure/crossings.h"
 #include "meshgrain/mesh.h"
 
 namespace meshgrain {
@@ -28,6 +28,12 @@ struct FaultCounts {
 
   std::size_t all() const { return inverted + crossings; }
 
+  /// Faces that hardly touch each other.
+  bool are_hardly_any() const {
+    constexpr std::size_t touches = 3;
+    return inverted == 0 && crossings <= touches;
+  }
+
   /// No more faces are inverted, and all is less than two thirds as bad; or none is any more, and
   /// no more pass through each other.
   bool are_clearly_fewer_than(const FaultCounts& other) const {
@@ -45,7 +51,7 @@ struct FaultCounts {
 
 /// And where they are.
 struct Faults : FaultCounts {
-  std::vector<Index> nodes;              // of the surface, at these faces; increasing
+  std::vector<Index> nodes;  // at these faces, of the surface before it was cut; increasing
   std::vector<Index> nodes_of_inverted;  // those of the former alone
 };
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "finish/crossings.h"
+#include "measure/crossings.h"
 #include "mesh/pieces.h"
 
 namespace meshgrain {

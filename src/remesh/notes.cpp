@@ -1,5 +1,7 @@
 #include "remesh/notes.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -60,6 +62,20 @@ void note_missed_count(RemeshResult& result, const RemeshOptions& options) {
       "made " + std::to_string(made) + (by_faces ? " faces" : " vertices") + " where " +
       std::to_string(asked) + " were asked for" +
       (off > 0 ? ", as topology and features come before the count" : ""));
+}
+
+void note_faults(RemeshResult& result, const FaultCounts& faults) {
+  if (faults.all() == 0) return;
+  const std::string inverted =
+      fmt::format("{} inverted {}", faults.inverted, faults.inverted == 1 ? "quad" : "quads");
+  const std::string crossings =
+      fmt::format("{} of faces that pass through each other",
+                  faults.crossings == 1 ? "a pair" : fmt::format("{} pairs", faults.crossings));
+  result.report.notes.push_back(fmt::format("could not avoid {}: more and smaller faces may help",
+                                            faults.inverted == 0 ? crossings
+                                            : faults.crossings == 0
+                                                ? inverted
+                                                : inverted + ", and " + crossings));
 }
 
 }  // namespace meshgrain

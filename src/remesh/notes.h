@@ -7,6 +7,7 @@
 #include "mesh/seams.h"
 #include "meshgrain/clean.h"
 #include "meshgrain/remesh.h"
+#include "remesh/flaws.h"
 
 namespace meshgrain {
 
@@ -18,5 +19,8 @@ std::vector<std::string> describe(const SeamReport& seams);
 /// Adds a line to the report if a finished mesh is off the count that was asked for by more than
 /// one percent.
 void note_missed_count(RemeshResult& result, const RemeshOptions& options);
+
+/// Adds a line to the report if a finished mesh has faults.
+void note_faults(RemeshResult& result, const FaultCounts& faults);
 
 }  // namespace meshgrain

@@ -51,8 +51,10 @@ void Pipeline::build_graph() {
     cut_surface();
     if (is_cloud_) return graph_of_cloud();
     around_ = vertex_faces(surface_, context_);
-    return nodes_are_vertices_ ? vertex_graph(surface_, around_, options_.graph, context_)
-                               : meshgrain::build_graph(surface_, options_.graph, context_);
+    Graph of_vertices = vertex_graph(surface_, around_, options_.graph, context_);
+    if (nodes_are_vertices_) return of_vertices;
+    graph_of_vertices_ = std::move(of_vertices);
+    return meshgrain::build_graph(surface_, options_.graph, context_);
   }));
   result_.report.nodes = graph().size();
   result_.report.edges = graph().neighbors.size() / 2;
@@ -418,7 +420,9 @@ void Pipeline::note_parted_hexagons() {
 }
 
 void Pipeline::report_fields() {
-  result_.report.edge_length = fields().position.edge_length[0] * frame_.scale;
+  const std::vector<float>& lengths = fields().position.edge_length.values;
+  result_.report.edge_length = std::accumulate(lengths.begin(), lengths.end(), 0.0) /
+                               static_cast<double>(lengths.size()) * frame_.scale;
   if (!options_.count_singularities || is_cloud_ || !nodes_are_vertices_) return;
   stage_("singularities", [&] {
     result_.report.orientation_singularities =

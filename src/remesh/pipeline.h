@@ -114,8 +114,10 @@ class Pipeline {
   /// Pure quads: irregular vertices that cancel each other out go.
   void untie_knots();
 
-  /// When all is done. Of more than 30,000 faces only if one is inverted.
+  /// When all is done. Of very many faces only if one is inverted.
   Faults find_faults();
+  /// Of the surface that was remeshed.
+  const Cuts& cuts() const { return cuts_; }
   /// Whether the input has marked edges.
   bool has_marks() const;
   bool is_sharpened() const { return is_sharpened_; }
@@ -302,6 +304,10 @@ class Pipeline {
   double mean_length() const { return target_.edge_length(area_); }
   double growth() const { return target_.growth(options_.sizing.grading); }
   const Graph& graph() const { return hierarchy_.levels[0]; }
+  /// What faces are finished over: their nodes are vertices of the surface then, or points.
+  const Graph& finishing_graph() const {
+    return nodes_are_vertices_ ? graph() : graph_of_vertices_;
+  }
   /// All but the finest, which together are as large as it.
   void drop_coarse_levels();
   /// Those again, if they were dropped.
@@ -341,6 +347,7 @@ class Pipeline {
   VertexFaces around_;                                   // its vertices, once it has a graph
   SurfaceSize input_size_{};                             // of the surface before it is refined
   Hierarchy hierarchy_;
+  Graph graph_of_vertices_;  // if that of the hierarchy is of faces
   double area_ = 0;
   EdgeLength lengths_;
   std::vector<std::uint8_t>

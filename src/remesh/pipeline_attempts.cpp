@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "finish/bare_ends.h"
-#include "finish/crossings.h"
-#include "finish/face_shape.h"
 #include "graph/spread.h"
+#include "measure/crossings.h"
+#include "measure/face_shape.h"
 #include "mesh/border.h"
 #include "meshgrain/statistics.h"
 #include "remesh/pipeline.h"
@@ -80,7 +80,10 @@ Faults Pipeline::find_faults() {
   if (!has_any) return faults;
   const Faces& faces = extraction_.mesh.faces;
   const auto add = [&](Index f) {
-    for (const Index v : faces[f]) faults.nodes.push_back(extraction_.nodes[v]);
+    for (const Index v : faces[f]) {
+      const Index node = extraction_.nodes[v];
+      faults.nodes.push_back(cuts_.empty() ? node : cuts_.sources[node]);
+    }
   };
   for (Index f = 0; f < faces.size(); ++f) {
     if (faces.degree(f) != 4 || scaled_jacobian(faces[f], extraction_.mesh.positions) > 0) continue;

@@ -11,9 +11,9 @@
 #include "extract/single_faces.h"
 #include "features/cut_samples.h"
 #include "field/transfer.h"
-#include "finish/face_shape.h"
 #include "finish/smooth.h"
 #include "finish/untwist.h"
+#include "measure/face_shape.h"
 #include "mesh/border.h"
 #include "meshgrain/error.h"
 #include "remesh/close_bad_quads.h"
@@ -274,15 +274,16 @@ bool Pipeline::smooth_faces_if(const std::function<bool()>& is_worth_mending) {
     }
     finish_borders();
     SmoothOptions smoothing = smooth_options();
-    if (!smooth(extraction_, surface_, around_, graph(), smoothing, context_, is_worth_mending)) {
+    if (!smooth(extraction_, surface_, around_, finishing_graph(), smoothing, context_,
+                is_worth_mending)) {
       return false;
     }
     // What is bad beside vertices that cannot move shows only now.
     if (!borders_.empty() && improve_border_faces(extraction_, options_.faces, context_)) {
-      smooth(extraction_, surface_, around_, graph(), smoothing, context_);
+      smooth(extraction_, surface_, around_, finishing_graph(), smoothing, context_);
     }
     if (options_.smoothing > 0 && posy_of(options_.faces) == 4) {
-      close_bad_quads(extraction_, surface_, around_, graph(), std::move(smoothing),
+      close_bad_quads(extraction_, surface_, around_, finishing_graph(), std::move(smoothing),
                       target_.spare_faces(extraction_.mesh), context_);
     }
     return true;
@@ -302,7 +303,8 @@ void Pipeline::finish_borders() {
 void Pipeline::untwist_faces() {
   if (options_.smoothing == 0 || posy_of(options_.faces) != 4) return;
   const bool border_stays = keeps_border_ || !borders_.empty();
-  stage_("smoothing", [&] { untwist(extraction_, graph().normals, border_stays, context_); });
+  stage_("smoothing",
+         [&] { untwist(extraction_, finishing_graph().normals, border_stays, context_); });
 }
 
 void Pipeline::untie_knots() {
@@ -310,7 +312,7 @@ void Pipeline::untie_knots() {
   // Shape is what regularity may cost.
   const auto most_worse = static_cast<float>(1 + regularity_ / 2);
   stage_("smoothing", [&] {
-    meshgrain::untie_knots(extraction_, surface_, around_, graph(), smooth_options(),
+    meshgrain::untie_knots(extraction_, surface_, around_, finishing_graph(), smooth_options(),
                            target_.spare_faces(extraction_.mesh), most_worse, context_);
   });
 }

@@ -28,7 +28,7 @@ void Pipeline::try_less_regular() {
   for (const double share : {0.5, 0.0}) {
     regularity_ = moderate + share * (options_.regularity - moderate);
     // Where the input passes through itself there are always some.
-    if (!try_again([&] { return faults() < before / 2; })) continue;
+    if (!try_again([&] { return 2 * faults() < before; })) continue;
     result_.report.notes.emplace_back(
         "less regular than was asked for: faces would be inverted or pass through each other");
     break;

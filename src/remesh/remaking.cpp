@@ -4,7 +4,21 @@
 #include <limits>
 #include <utility>
 
+#include "meshgrain/statistics.h"
+
 namespace meshgrain {
+
+Mesh Made::surface() const {
+  Mesh surface = surface_in_pieces();
+  join_again(surface, cuts);
+  return surface;
+}
+
+Mesh Made::surface_in_pieces() const {
+  Mesh surface = result.fields.surface;
+  if (!has_marks) surface.marked_edges.clear();  // creases that were found are to be found anew
+  return surface;
+}
 
 bool may_remake(const RemeshOptions& options) {
   return options.graph.nodes == GraphNodes::vertices && options.smoothing > 0 &&
@@ -52,6 +66,13 @@ Made Remaking::made_without_creases(Mesh surface, const Made& before, const std:
 }
 
 void Remaking::keep_if_better(Made other) {
+  // Faces of different pieces that pass through each other are no faults where these were left
+  // apart, but they are there.
+  const auto crossings = [&](const Made& of) {
+    return find_crossings(of.result.mesh, context_).size();
+  };
+  const bool are_apart = other.cuts.empty() && !made_.cuts.empty();
+  if (are_apart && crossings(other) > crossings(made_)) return;
   if (other.faults.are_clearly_fewer_than(made_.faults)) made_ = std::move(other);
 }
 

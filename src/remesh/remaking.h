@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/cut_apart.h"
 #include "meshgrain/remesh.h"
 #include "remesh/flaws.h"
 #include "remesh/stages.h"
@@ -21,9 +22,15 @@ struct Made {
   std::vector<std::string> notes;  // of the input, before there were faces
   Mesh seamed;                     // the input, if seams may be joined; else empty
   bool has_marks;                  // besides those of creases that were found
+  Cuts cuts;                       // of the surface that was remeshed
   double room_for_creases;         // those with less were left out (see Pipeline)
   bool follows_creases;            // that nobody asked for; only told if faces are inverted
 
+  /// What was remeshed, to be so once more: joined again where it was cut, and with the marks that
+  /// it came with alone.
+  Mesh surface() const;
+  /// The same, but as it was cut.
+  Mesh surface_in_pieces() const;
   bool is_without_creases() const { return std::isinf(room_for_creases); }
   /// Whether so many faces pass through each other that little can be seen of what the surface is:
   /// fewer are no reason to change it.

@@ -14,12 +14,6 @@
 namespace meshgrain {
 namespace {
 
-/// Faces that hardly touch each other.
-bool are_hardly_any(const FaultCounts& faults) {
-  constexpr std::size_t touches = 3;
-  return faults.inverted == 0 && faults.crossings <= touches;
-}
-
 /// Whether there are so few that the features behind them are few, too: two handles alone may make
 /// for hundreds of crossings.
 bool are_few(const FaultCounts& faults, std::size_t faces) {
@@ -36,7 +30,7 @@ constexpr Finer ever_more[] = {{0.5f, 0.75}, {0.25f, 1.5}};
 
 /// The surface that was remeshed, with the edge lengths that are wanted as values.
 Mesh with_lengths(const Made& made, const Finer& finer) {
-  Mesh surface = made.result.fields.surface;
+  Mesh surface = made.surface();
   const auto reach = static_cast<float>(finer.reach * made.side);
   std::vector<Eigen::AlignedBox3f> near;
   for (const Index v : made.faults.nodes) {
@@ -72,7 +66,7 @@ void try_finer_faces(Made& made, const RemeshOptions& options, const Make& make,
                      const Context& context) {
   const Mesh& surface = made.result.fields.surface;
   if (surface.is_point_cloud() || !may_remake(options) || !options.sizing.is_uniform() ||
-      options.edge_length > 0 || are_hardly_any(made.faults) ||
+      options.edge_length > 0 || made.faults.are_hardly_any() ||
       !are_few(made.faults, made.result.mesh.faces.size())) {
     return;
   }
@@ -82,7 +76,7 @@ void try_finer_faces(Made& made, const RemeshOptions& options, const Make& make,
   sized.sizing.kind = Sizing::Kind::values;
   const Made before = made;
   for (const Finer& finer : ever_more) {
-    if (are_hardly_any(made.faults)) break;
+    if (made.faults.are_hardly_any()) break;
     Mesh lengths = with_lengths(before, finer);
     if (!made.has_serious_faults() && stretch(lengths, sized, context) > most_stretched) break;
     Made other = remaking.made_of(

@@ -2,21 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <utility>
 
 #include "mesh/weld.h"
+#include "meshgrain/statistics.h"
 #include "tunnels/close_tunnels.h"
 
 namespace meshgrain {
 namespace {
-
-double diagonal(const Mesh& mesh) {
-  Eigen::AlignedBox3f box;
-  for (const Vec3& p : mesh.positions) box.extend(p);
-  return box.diagonal().norm();
-}
 
 class SimplerTopology {
  public:
@@ -28,11 +22,17 @@ class SimplerTopology {
     Mesh seamed = std::exchange(made_.seamed, {});
     Made before = made_;
     if (!seamed.faces.empty()) join_seams(std::move(seamed), before);
-    close_tunnels(before);
+    close_tunnels(before, Pieces::meet);
+    // Tunnels alone do not help where pieces crowd each other, nor does it to leave these apart.
+    const bool any_meet = !before.cuts.empty();
+    if (any_meet && made_.has_serious_faults()) close_tunnels(before, Pieces::are_apart);
     remaking_.report_times();
   }
 
  private:
+  /// Those of a surface that is not manifold.
+  enum class Pieces { meet, are_apart };
+
   /// Tunnels may be too narrow all the same: `before` becomes what there is without seams.
   void join_seams(Mesh surface, Made& before) {
     // The two sides of a seam mostly cross a little: that alone is no reason to join them.
@@ -45,9 +45,9 @@ class SimplerTopology {
     remaking_.keep_if_better(before);
   }
 
-  void close_tunnels(const Made& before) {
+  void close_tunnels(const Made& before, Pieces pieces) {
     constexpr double of_diagonal = 0.25;  // a wider tunnel is what the shape is about
-    const double longest = of_diagonal * diagonal(before.result.fields.surface);
+    const double longest = of_diagonal * bounding_diagonal(before.result.fields.surface);
     std::size_t closed_before = 0;
     const Faults& faults = before.faults;
     const std::vector<Index>& near =
@@ -55,8 +55,7 @@ class SimplerTopology {
     // How many sides of faces are around the widest tunnels that are closed.
     for (const double sides_around : {4.0, 6.0}) {
       if (!made_.has_serious_faults()) break;
-      Mesh surface = before.result.fields.surface;
-      if (!before.has_marks) surface.marked_edges.clear();  // creases are found anew
+      Mesh surface = pieces == Pieces::meet ? before.surface() : before.surface_in_pieces();
       const double most = std::min(sides_around * before.side, longest);
       const std::size_t closed = remaking_.stage()(
           "tunnels", [&] { return meshgrain::close_tunnels(surface, near, most, context_); });
@@ -65,17 +64,19 @@ class SimplerTopology {
           static_cast<double>(closed) > considerably * static_cast<double>(closed_before);
       if (!are_more) continue;
       closed_before = closed;
-      keep_if_better(std::move(surface), before, closed);
+      keep_if_better(std::move(surface), before, pieces, closed);
     }
   }
 
   /// Or without creases, if it follows some and has inverted faces.
-  void keep_if_better(Mesh surface, const Made& before, std::size_t closed) {
+  void keep_if_better(Mesh surface, const Made& before, Pieces pieces, std::size_t closed) {
     const auto note = [&](const char* also) {
       return fmt::format(
-          "closed {} {}{}: faces of this size around {} would be inverted or pass through each "
+          "closed {} {}{}{}: faces of this size around {} would be inverted or pass through each "
           "other",
-          closed, closed == 1 ? "tunnel" : "tunnels", also, closed == 1 ? "it" : "them");
+          closed, closed == 1 ? "tunnel" : "tunnels",
+          pieces == Pieces::meet ? "" : ", left pieces apart where the surface is not manifold",
+          also, closed == 1 ? "it" : "them");
     };
     Made other = made_of(surface, before, note(""));
     const bool creases_may_go = other.follows_creases && other.faults.inverted > 0;

@@ -8,7 +8,7 @@
 #include <span>
 #include <utility>
 
-#include "finish/crossings.h"
+#include "measure/crossings.h"
 #include "mesh/border.h"
 #include "mesh/splitting.h"
 #include "mesh/vertex_faces.h"

@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "finish/face_shape.h"
+#include "measure/face_shape.h"
 
 namespace meshgrain {
 namespace {

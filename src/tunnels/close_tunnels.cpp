@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "finish/crossings.h"
+#include "measure/crossings.h"
 #include "mesh/keep_vertices.h"
 #include "mesh/pieces.h"
 #include "mesh/vertex_faces.h"

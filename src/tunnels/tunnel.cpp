@@ -6,7 +6,7 @@
 #include <queue>
 #include <utility>
 
-#include "finish/face_shape.h"
+#include "measure/face_shape.h"
 #include "tunnels/loop_length.h"
 
 namespace meshgrain {
