@@ -164,10 +164,12 @@ void attempt(const Way& way, Made& made, const RemeshOptions& options, const Con
 
 RemeshResult remesh_whole(Mesh input, const RemeshOptions& options, const Context& context) {
   Made made = make(std::move(input), options, std::nullopt, context);
-  attempt(try_no_creases, made, options, context);
-  attempt(try_finer_faces, made, options, context);
-  attempt(try_simpler_topology, made, options, context);
-  attempt(try_pieces_apart, made, options, context);
+  if (options.retries) {
+    attempt(try_no_creases, made, options, context);
+    attempt(try_finer_faces, made, options, context);
+    attempt(try_simpler_topology, made, options, context);
+    attempt(try_pieces_apart, made, options, context);
+  }
   note_faults(made.result, made.faults);
   return std::move(made.result);
 }
@@ -177,6 +179,11 @@ RemeshResult remesh_whole(Mesh input, const RemeshOptions& options, const Contex
 RemeshResult remesh(Mesh input, const RemeshOptions& options, const Context& context) {
   check(options);
   check_memory(input, options, context);
+  if (options.retries && !has_memory_for_retries(input, options, context)) {
+    RemeshOptions once = options;
+    once.retries = false;
+    return remesh(std::move(input), once, context);
+  }
   RemeshResult result = options.symmetry.any()
                             ? remesh_symmetric(std::move(input), options, remesh_half, context)
                             : remesh_whole(std::move(input), options, context);
@@ -197,6 +204,7 @@ std::vector<RemeshResult> remesh_levels(Mesh input, std::span<const std::size_t>
   options.face_count = *std::max_element(face_counts.begin(), face_counts.end());
   check(options);
   check_memory(input, options, context);
+  options.retries = options.retries && has_memory_for_retries(input, options, context);
   Pipeline pipeline(input, options, context);
   pipeline.clean_up(std::move(input));
   prepare(pipeline);

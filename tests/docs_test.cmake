@@ -66,6 +66,7 @@ foreach(document IN LISTS documents)
   endforeach()
 
   if(document MATCHES "README|method")
+    string(REGEX REPLACE "`cmake [^`]*`" "" text "${text}")  # which has options of its own
     string(REGEX MATCHALL "[ `]--[a-z][a-z-]+" found "${text}")
     foreach(option IN LISTS found)
       string(REGEX REPLACE "^[ `]" "" option "${option}")

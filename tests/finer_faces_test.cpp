@@ -88,6 +88,22 @@ TEST(FinerFaces, ABoreNarrowerThanAFaceStaysAndNothingCrosses) {
   EXPECT_TRUE(result.fields.surface.values.empty());
 }
 
+/// Nor are there others where memory is short.
+TEST(FinerFaces, WithoutRetriesTheFirstFacesStay) {
+  const Mesh ball = drilled_ball();
+  RemeshOptions options;
+  options.face_count = 300;
+  options.retries = false;
+  const RemeshResult first = remesh(ball, options);
+  made::expect_same_topology(mesh_statistics(first.mesh), mesh_statistics(ball));
+  EXPECT_FALSE(find_crossings(first.mesh).empty());
+  ASSERT_EQ(first.report.notes.size(), 1u);
+  EXPECT_TRUE(first.report.notes[0].starts_with("could not avoid"));
+  options.retries = true;
+  options.memory_limit = std::size_t{40} << 20;
+  EXPECT_EQ(remesh(ball, options).mesh.positions, first.mesh.positions);
+}
+
 /// Gives a mesh around the origin a fin that stands on it, along edges from the vertex that is
 /// farthest in a direction: always on to the neighbour that is farthest along.
 void add_fin(Mesh& mesh, const Vec3& from, const Vec3& along, std::size_t edges) {

@@ -324,6 +324,10 @@ void add_options(CLI::App& app, Arguments& a) {
                         fmt::format("smoothing steps at the end ({})", RemeshOptions().smoothing))
              ->check(CLI::Range(0, 100000))
              ->type_name("N"));
+  method(app.add_flag_callback(
+      "--no-retries", [&o] { o.retries = false; },
+      "keep the first faces: several times as fast where they have faults that others may not "
+      "have"));
   method(app.add_option("--seed", o.solver.seed, "of the random start (0)")->type_name("N"));
   method(app.add_flag("--weld", a.read.weld, "merge vertices at the same place first"));
 

@@ -124,7 +124,8 @@ Json to_json(const RemeshOptions& o) {
                {"regularity", o.regularity},
                {"min_component", o.min_component},
                {"manifold", o.manifold},
-               {"lock_borders", o.lock_borders}};
+               {"lock_borders", o.lock_borders},
+               {"retries", o.retries}};
   if (o.sizing.kind == Sizing::Kind::distance) {
     const auto& p = o.sizing.point;
     json["sizing_point"] = {p.x(), p.y(), p.z()};

@@ -72,10 +72,15 @@ struct RemeshOptions {
   /// points). Values are taken from the nearest node, so the surfaces need not be the same.
   const Fields* fields = nullptr;
 
+  /// Whether others are made, and the best kept, where faces turn out to have faults. That takes
+  /// several times as long, and as much memory: without, the first ones are mended as far as can
+  /// be.
+  bool retries = true;
+
   /// Bytes that a program which only remeshes this may have in memory, at its peak. What may take
   /// more is refused at once, by an estimate that is rather too high than too low, and leaves out
   /// whatever else the program holds. With a limit no copy of the input is kept that its seams
-  /// could be joined in. 0: no limit.
+  /// could be joined in, and if it leaves no room for `retries` there are none. 0: no limit.
   std::size_t memory_limit = 0;
 
   bool count_singularities = true;  ///< For the report: takes a look at every face.

@@ -181,6 +181,16 @@ void check_memory(const Mesh& input, const RemeshOptions& options, const Context
   refuse_more_than_limit(needed(input, options, context), options);
 }
 
+bool has_memory_for_retries(const Mesh& input, const RemeshOptions& options,
+                            const Context& context) {
+  if (options.memory_limit == 0) return true;
+  // Of parts that are made over several times, with many pairs of faces that pass through each
+  // other, the worst took 3.5 times as much.
+  constexpr double worst = 4;
+  const Need need = needed(input, options, context);
+  return worst * (need.input + need.target) <= static_cast<double>(options.memory_limit);
+}
+
 void check_memory_of_coarse(const Mesh& surface, double area, const RemeshOptions& options,
                             const Target& target, const Context& context) {
   if (options.memory_limit == 0) return;

@@ -10,8 +10,12 @@ namespace meshgrain {
 /// no more than two thirds too high.
 void check_memory(const Mesh& input, const RemeshOptions& options, const Context& context);
 
-/// The same where coarsen() has left a surface of this area: on a rough one it may leave more than
-/// check_memory() expects.
+/// Whether the limit leaves room for RemeshOptions::retries, too.
+bool has_memory_for_retries(const Mesh& input, const RemeshOptions& options,
+                            const Context& context);
+
+/// check_memory() where coarsen() has left a surface of this area: on a rough one it may leave more
+/// than check_memory() expects.
 void check_memory_of_coarse(const Mesh& surface, double area, const RemeshOptions& options,
                             const Target& target, const Context& context);
 

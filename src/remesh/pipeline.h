@@ -264,8 +264,10 @@ class Pipeline {
   bool may_be_of_use(const FaultCounts& faults) const {
     return !to_beat_ || !faults.are_far_more_than(*to_beat_);
   }
-  /// Whether what is wrong with the faces is to be seen, and other ones would not take too long.
-  bool may_make_others() const;
+  /// Whether what is wrong with the faces is to be seen, and to mend it would not take too long.
+  bool shows_faults() const;
+  /// Whether it may take the place of these to make others.
+  bool may_make_others() const { return options_.retries && shows_faults(); }
   FeatureOptions feature_options() const;
   /// Those longer than the target allows. Returns whether there are any.
   bool split_long_edges(double area, const EdgeLengths& edges);

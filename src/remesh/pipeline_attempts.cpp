@@ -38,7 +38,7 @@ LostSurface Pipeline::lost_surface() const {
   return lost;
 }
 
-bool Pipeline::may_make_others() const {
+bool Pipeline::shows_faults() const {
   return options_.smoothing > 0 && has_few_faces() && !has_given_positions(options_);
 }
 
@@ -298,7 +298,8 @@ Flaws Pipeline::try_other_starts(Flaws before) {
 }
 
 void Pipeline::try_coarser_lattice() {
-  if (lattice_faces_ == options_.faces || has_given_positions(options_)) return;
+  if (!options_.retries || lattice_faces_ == options_.faces || has_given_positions(options_))
+    return;
   constexpr double hopeless = 0.2;
   if (inverted_faces() == 0 || share_of_holes() > hopeless) return;
   const Flaws before = flaws(0);

@@ -308,7 +308,7 @@ void Pipeline::untwist_faces() {
 }
 
 void Pipeline::untie_knots() {
-  if (options_.faces != OutputFaces::quads || !borders_.empty() || !may_make_others()) return;
+  if (options_.faces != OutputFaces::quads || !borders_.empty() || !shows_faults()) return;
   // Shape is what regularity may cost.
   const auto most_worse = static_cast<float>(1 + regularity_ / 2);
   stage_("smoothing", [&] {

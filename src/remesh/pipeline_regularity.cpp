@@ -22,7 +22,8 @@ bool are_no_worse(const MeshStatistics& now, const MeshStatistics& before) {
 
 void Pipeline::try_less_regular() {
   const double moderate = RemeshOptions().regularity;
-  if (is_cloud_ || options_.smoothing == 0 || regularity_ <= moderate) return;
+  const bool may_try = options_.retries && !is_cloud_ && options_.smoothing > 0;
+  if (!may_try || regularity_ <= moderate) return;
   const std::size_t before = faults();
   if (before == 0 || before > extraction_.mesh.faces.size() / Flaws::hopeless) return;
   for (const double share : {0.5, 0.0}) {
