@@ -162,6 +162,39 @@ TEST(Topology, PiecesThatMeetAlongAnEdgeLeaveNoCrack) {
   expect_to_meet(cubes, std::array<std::size_t, 2>{500, 1500});
 }
 
+/// A ball on which smaller ones stand, each on a single vertex.
+TEST(Topology, PiecesThatTouchAtAVertexMeet) {
+  const Mesh ball = sample_shape("sphere", 0.5);
+  Mesh balls = ball;
+  for (const Vec3& way : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)}) {
+    const auto farthest = [&](const Vec3& direction) {
+      return static_cast<Index>(
+          std::ranges::max_element(ball.positions, {},
+                                   [&](const Vec3& p) { return p.dot(direction); }) -
+          ball.positions.begin());
+    };
+    const Index foot = farthest(way), own = farthest(-way);
+    const auto first = static_cast<Index>(balls.positions.size());
+    for (const Vec3& p : ball.positions) {
+      balls.positions.push_back(ball.positions[foot] + 0.15f * (p - ball.positions[own]));
+    }
+    for (Index f = 0; f < ball.faces.size(); ++f) {
+      std::array<Index, 3> face;
+      std::ranges::transform(ball.faces[f], face.begin(),
+                             [&](Index v) { return v == own ? foot : first + v; });
+      balls.faces.push_back(face);
+    }
+  }
+  for (const std::size_t count : {300, 1000, 3000}) {
+    RemeshOptions options;
+    options.face_count = count;
+    const MeshStatistics after = mesh_statistics(remesh(balls, options).mesh);
+    EXPECT_EQ(after.components, 1u) << count;
+    EXPECT_EQ(after.non_manifold_vertices, 4u) << count;
+    EXPECT_EQ(after.inverted_quads, 0u) << count;
+  }
+}
+
 TEST(Topology, StairsOfCubesMeet) {
   expect_to_meet(made::surface_of_cells({{0, 0, 0}, {1, 1, 0}, {2, 2, 0}, {3, 3, 0}}),
                  std::array<std::size_t, 1>{1500});

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <limits>
 #include <numeric>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -14,7 +15,9 @@
 #include "field/posy.h"
 #include "mesh/border.h"
 #include "util/collect.h"
+#include "util/edge_of.h"
 #include "util/indices.h"
+#include "util/union_find.h"
 
 namespace meshgrain {
 namespace {
@@ -40,6 +43,7 @@ class Collapse {
     std::iota(merged_into_.begin(), merged_into_.end(), Index{0});
     holes_.resize(halfedges);
     rim_.assign(graph.size(), 0);
+    hold_touching_pieces(surface, context);
     lattice_.hold.resize(map_.vertices());
     for_indices(
         map_.vertices(), [&](Index v) { lattice_.hold[v] = hold_[sources_[v]]; }, context);
@@ -95,6 +99,28 @@ class Collapse {
                        const Context& context) &&;
 
  private:
+  /// Pieces that touch at a vertex alone would come apart if that vanished: of each two of them the
+  /// first stays, as a corner.
+  void hold_touching_pieces(const Mesh& surface, const Context& context) {
+    if (!any_touch_) return;
+    std::vector<Index> first(graph_.size(), no_index);  // vertex of the map
+    std::vector<std::array<Index, 2>> touching;
+    for (Index v = 0; v < map_.vertices(); ++v) {
+      Index& other = first[sources_[v]];
+      if (other == no_index) other = v;
+      if (other != v) touching.push_back({other, v});
+    }
+    UnionFind pieces(map_.vertices());
+    for (Index h = 0; h < map_.halfedges(); h += 2) pieces.unite(map_.origin(h), map_.target(h));
+    const auto on_edge = mark_ends(branch_edges(surface, context), surface.positions.size());
+    std::set<std::array<Index, 2>> seen;
+    for (const auto& [v, w] : touching) {
+      if (on_edge[sources_[v]] != 0) continue;
+      const auto pair = edge_of(pieces.find(v), pieces.find(w));
+      if (pair[0] != pair[1] && seen.insert(pair).second) hold_[sources_[v]] = at_corner;
+    }
+  }
+
   /// The map of the surface with each disk as one vertex, in the frame of its root. Returns the
   /// corners of `disks_.triangles` where halfedges start.
   std::vector<Index> shrink_disks(const Context& context) {
@@ -121,6 +147,7 @@ class Collapse {
     for_indices(disks_.triangles.size(), shrink, context);
     std::vector<Index> corners;
     map_ = PolygonMap(shrunk, sources_, corners, context);
+    any_touch_ = map_.vertices() > roots.size();
     for (Index& source : sources_) source = roots[source];
     return corners;
   }
@@ -247,6 +274,7 @@ class Collapse {
   const PositionField& position_;
   DiskClusters disks_;
   std::vector<Index> sources_;  // of each vertex of the map: the one of the surface
+  bool any_touch_ = false;      // several are one of the surface
   JumpMap lattice_;
   PolygonMap& map_ = lattice_.map;
   std::vector<std::uint8_t>& holes_ = lattice_.holes;
