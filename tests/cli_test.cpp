@@ -425,6 +425,7 @@ TEST_F(Cli, ReportTellsAll) {
   run_well("in.obj -o out.obj -f 500 --report report.json --energies --seed 7 -t 2");
   const json report = json::parse(read("report.json"));
   EXPECT_EQ(report["version"], version());
+  EXPECT_EQ(report["arguments"][0], "in.obj");
   EXPECT_EQ(report["options"]["seed"], 7);
   EXPECT_EQ(report["options"]["faces"], 500);
   EXPECT_EQ(report["threads"], 2);

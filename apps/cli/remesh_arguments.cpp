@@ -476,6 +476,7 @@ bool parse_remesh(int argc, char** argv, Arguments& a) {
   CLI::App app(description, "meshgrain");
   add_options(app, a);
   if (!parse(app, argc, argv)) return false;
+  a.words.assign(argv + 1, argv + argc);
   a.posy_given = app.count("--posy") > 0;
   a.target_given = app.count("-f") + app.count("-v") + app.count("-s") > 0;
   resolve(a);

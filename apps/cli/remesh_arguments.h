@@ -11,6 +11,7 @@ namespace meshgrain::cli {
 
 /// What the command line of remesh_command says.
 struct Arguments {
+  std::vector<std::string> words;  // as they were given
   std::string input, output, report, features, fields, fields_out;
   int threads = 0;
   bool quiet = false;

@@ -77,15 +77,8 @@ void add_features(const Arguments& a, Mesh& input, const Context& context) {
 }
 
 std::string describe(const MeshStatistics& s) {
-  std::string text;
-  const auto add = [&](std::size_t count, const char* one, const char* many) {
-    if (count > 0) text += (text.empty() ? "" : ", ") + counted(count, one, many);
-  };
-  add(s.quads, "quad", "quads");
-  add(s.triangles, "triangle", "triangles");
-  add(s.larger, "larger polygon", "larger polygons");
-  add(s.vertices, "vertex", "vertices");
-  return text + fmt::format(", {} irregular", with_commas(s.irregular_vertices));
+  return fmt::format("{}, {}, {} irregular", faces_by_kind(s),
+                     counted(s.vertices, "vertex", "vertices"), with_commas(s.irregular_vertices));
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -115,6 +108,7 @@ void write_report(const Arguments& a, const std::vector<Written>& meshes, int th
   const RemeshReport& first = meshes.front().report;
   Json json = {
       {"version", version()},
+      {"arguments", a.words},
       {"input",
        {{"file", a.input}, {"vertices", first.input_vertices}, {"faces", first.input_faces}}},
       {"options", to_json(a.remesh)},

@@ -1,5 +1,7 @@
 #include "report.h"
 
+#include "arguments.h"
+
 namespace meshgrain::cli {
 namespace {
 
@@ -21,6 +23,17 @@ Json number_or_null(const std::optional<std::size_t>& number) {
 }
 
 }  // namespace
+
+std::string faces_by_kind(const MeshStatistics& s) {
+  std::string text;
+  const auto add = [&](std::size_t count, const char* one, const char* many) {
+    if (count > 0) text += (text.empty() ? "" : ", ") + counted(count, one, many);
+  };
+  add(s.quads, "quad", "quads");
+  add(s.triangles, "triangle", "triangles");
+  add(s.larger, "larger", "larger");
+  return text;
+}
 
 Json to_json(const MeshStatistics& s) {
   return {{"vertices", s.vertices},

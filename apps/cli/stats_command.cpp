@@ -36,24 +36,13 @@ void row(std::string_view name, const char* format, std::initializer_list<double
   fmt::print("\n");
 }
 
-std::string kinds(const MeshStatistics& s) {
-  std::string text;
-  const auto add = [&](std::size_t count, const char* one, const char* many) {
-    if (count > 0) text += (text.empty() ? "" : ", ") + counted(count, one, many);
-  };
-  add(s.quads, "quad", "quads");
-  add(s.triangles, "triangle", "triangles");
-  add(s.larger, "larger", "larger");
-  return text;
-}
-
 void print(const std::string& name, const MeshStatistics& s,
            const std::optional<std::size_t>& of_orientation,
            const std::optional<std::size_t>& crossings,
            const std::optional<Comparison>& comparison) {
   fmt::print("{}\n\n", name);
   line("vertices", with_commas(s.vertices));
-  line("faces", with_commas(s.faces), kinds(s));
+  line("faces", with_commas(s.faces), faces_by_kind(s));
   line("irregular vertices", with_commas(s.irregular_vertices));
   line("singularities", with_commas(s.singularities),
        of_orientation ? fmt::format("orientation field: {}", with_commas(*of_orientation)) : "");
