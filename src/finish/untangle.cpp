@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "util/sort_unique.h"
+#include "util/index_marks.h"
 
 namespace meshgrain {
 
@@ -10,16 +10,17 @@ void untangle(const Mesh& mesh, const VertexFaces& around, LocalSearch& search, 
               const Context& context) {
   constexpr float wanted = 0.75f;  // quality below which a face is looked at
   for (int sweep = 0; sweep < sweeps; ++sweep) {
-    std::vector<Index> vertices;
+    IndexMarks marks;
     for (Index f = 0; f < mesh.faces.size(); ++f) {
       if (search.quality(f) >= wanted) continue;
       for (const Index v : mesh.faces[f]) {  // the neighbours must make room
         for (const Index g : around[v]) {
-          vertices.insert(vertices.end(), mesh.faces[g].begin(), mesh.faces[g].end());
+          for (const Index w : mesh.faces[g]) marks.set(w);
         }
       }
     }
-    sort_unique(vertices);
+    std::vector<Index> vertices;
+    for (Index v = marks.first(0); v != no_index; v = marks.first(v + 1)) vertices.push_back(v);
     if (!search.improve(vertices, 1, context)) return;
   }
 }

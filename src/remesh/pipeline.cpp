@@ -133,7 +133,12 @@ void Pipeline::find_lines() {
     });
     append(border_constraints(cloud_border_));
   }
-  if (is_cloud_ || !nodes_are_vertices_) return;
+  if (is_cloud_) return;
+  if (!nodes_are_vertices_) {
+    const FeatureOptions border_alone{.creases = Creases::none, .align_border = false};
+    border_lines_ = find_features(surface_, border_alone, 0, context_);
+    return;
+  }
   if (options_.lock_borders) find_borders();
   stage_("features", [&] {
     const auto find = [&] {

@@ -367,6 +367,7 @@ class Pipeline {
   RoughFaces rough_;                        // of those that were smoothed last
   bool divides_borders_ = false;
   FeatureLines features_;
+  FeatureLines border_lines_;  // which vertices slide along if the graph is of faces
   FeatureConstraints constraints_;
   std::vector<std::uint8_t> keeps_singularities_;  // the lattice; see ExtractOptions
   Extraction extraction_;

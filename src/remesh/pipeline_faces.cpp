@@ -262,7 +262,7 @@ SmoothOptions Pipeline::smooth_options() const {
   smoothing.corners_stay = !borders_.empty();
   // Quads at lines are mended by close_bad_quads() first.
   smoothing.creases_stay = posy_of(options_.faces) == 4;
-  if (!is_cloud_ && nodes_are_vertices_) smoothing.features = &features_;
+  if (!is_cloud_) smoothing.features = nodes_are_vertices_ ? &features_ : &border_lines_;
   return smoothing;
 }
 
