@@ -141,13 +141,14 @@ Made make(Mesh input, const RemeshOptions& options, const std::optional<Wanted>&
 }
 
 /// One half of a mesh, whose tunnels must be those of the other, and its border where they meet.
-RemeshResult remesh_half(Mesh input, const RemeshOptions& options, const Context& context) {
+RemeshedHalf remesh_half(Mesh input, const RemeshOptions& options, const Context& context) {
   Pipeline pipeline(input, options, context);
   pipeline.keep_border();
   pipeline.clean_up(std::move(input));
   prepare(pipeline);
   make_mesh(pipeline);
-  return std::move(pipeline).result();
+  const FaultCounts faults = pipeline.find_faults();
+  return {std::move(pipeline).result(), faults};
 }
 
 /// What cannot be made otherwise stays as it is.
@@ -176,14 +177,10 @@ RemeshResult remesh_whole(Mesh input, const RemeshOptions& options, const Contex
 
 }  // namespace
 
-RemeshResult remesh(Mesh input, const RemeshOptions& options, const Context& context) {
-  check(options);
-  check_memory(input, options, context);
-  if (options.retries && !has_memory_for_retries(input, options, context)) {
-    RemeshOptions once = options;
-    once.retries = false;
-    return remesh(std::move(input), once, context);
-  }
+RemeshResult remesh(Mesh input, const RemeshOptions& asked, const Context& context) {
+  check(asked);
+  RemeshOptions options = asked;
+  options.retries = check_memory(input, asked, context) && asked.retries;
   RemeshResult result = options.symmetry.any()
                             ? remesh_symmetric(std::move(input), options, remesh_half, context)
                             : remesh_whole(std::move(input), options, context);
@@ -203,8 +200,7 @@ std::vector<RemeshResult> remesh_levels(Mesh input, std::span<const std::size_t>
   options.edge_length = 0;
   options.face_count = *std::max_element(face_counts.begin(), face_counts.end());
   check(options);
-  check_memory(input, options, context);
-  options.retries = options.retries && has_memory_for_retries(input, options, context);
+  options.retries = check_memory(input, options, context) && options.retries;
   Pipeline pipeline(input, options, context);
   pipeline.clean_up(std::move(input));
   prepare(pipeline);

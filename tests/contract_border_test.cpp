@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "has_note.h"
 #include "mesh/border.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/statistics.h"
@@ -67,9 +68,7 @@ TEST(ContractBorder, PolesAreRemeshed) {
       EXPECT_EQ(s.euler, 2);
       EXPECT_EQ(s.boundary_loops, 0u);
       EXPECT_NEAR(static_cast<double>(s.faces), 100, 2);
-      EXPECT_TRUE(std::ranges::any_of(result.report.notes, [](const std::string& note) {
-        return note.starts_with("merged 46 vertices of the border");
-      }));
+      EXPECT_TRUE(made::has_note(result, "merged 46 vertices of the border"));
     }
   }
 }

@@ -15,6 +15,7 @@
 
 #include "features/fading_creases.h"
 #include "features/mechanical_creases.h"
+#include "has_note.h"
 #include "kept_creases.h"
 #include "made_cells.h"
 #include "made_fields.h"
@@ -440,11 +441,7 @@ TEST(Features, MarksYieldToSoundFaces) {
 TEST(Features, StepsOfVoxelsYieldToSoundFaces) {
   const Mesh ball = voxel_ball(11);
   ASSERT_GT(features_of(triangulate(ball)).size(), 500u);
-  const auto says_so = [](const RemeshResult& of) {
-    return std::ranges::any_of(of.report.notes, [](const std::string& note) {
-      return note.starts_with("without creases");
-    });
-  };
+  const auto says_so = [](const RemeshResult& of) { return made::has_note(of, "without creases"); };
   RemeshOptions options;
   // Faces that follow the steps pass through each other, of the larger number a few; but then there
   // are more than twice as many.

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "has_note.h"
 #include "measure/crossings.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
@@ -81,9 +82,7 @@ TEST(FinerFaces, ABoreNarrowerThanAFaceStaysAndNothingCrosses) {
   EXPECT_EQ(s.inverted_quads, 0u);
   EXPECT_NEAR(static_cast<double>(s.faces), 300, 3);
   EXPECT_TRUE(find_crossings(result.mesh, Context()).empty());
-  EXPECT_TRUE(std::ranges::any_of(result.report.notes, [](const std::string& note) {
-    return note.starts_with("made faces smaller");
-  }));
+  EXPECT_TRUE(made::has_note(result, "made faces smaller"));
   EXPECT_EQ(result.report.input_vertices, ball.positions.size());
   EXPECT_TRUE(result.fields.surface.values.empty());
 }
@@ -143,9 +142,7 @@ TEST(FinerFaces, PiecesThatMeetOnEdgesStillMeet) {
     options.face_count = count;
     options.features.creases = creases;
     const RemeshResult result = remesh(ball, options);
-    EXPECT_TRUE(std::ranges::any_of(result.report.notes, [&](const std::string& given) {
-      return given.starts_with(note);
-    })) << note;
+    EXPECT_TRUE(made::has_note(result, note)) << note;
     const MeshStatistics s = mesh_statistics(result.mesh);
     EXPECT_EQ(s.components, 1u) << note;
     EXPECT_GT(s.non_manifold_edges, 2u) << note;

@@ -1,9 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <optional>
-#include <string>
 
+#include "has_note.h"
 #include "meshgrain/shapes.h"
 #include "remesh/try_no_creases.h"
 
@@ -20,9 +19,7 @@ Made made_with(std::size_t inverted) {
 }
 
 bool is_noted(const Made& made) {
-  return std::ranges::any_of(made.result.report.notes, [](const std::string& note) {
-    return note.starts_with("without creases: ");
-  });
+  return made::has_note(made.result, "without creases: ");
 }
 
 TEST(NoCreases, AreTriedWhereFacesThatFollowSomeAreInverted) {

@@ -1,10 +1,9 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <optional>
-#include <string>
 
+#include "has_note.h"
 #include "mesh/cut_apart.h"
 #include "meshgrain/statistics.h"
 #include "remesh/try_pieces_apart.h"
@@ -30,9 +29,7 @@ Made made_with(std::size_t crossings) {
 }
 
 bool is_noted(const Made& made) {
-  return std::ranges::any_of(made.result.report.notes, [](const std::string& note) {
-    return note.starts_with("left pieces apart");
-  });
+  return made::has_note(made.result, "left pieces apart");
 }
 
 TEST(PiecesApart, SurfacesAreJoinedAgainUnlessTheyAreWantedInPieces) {

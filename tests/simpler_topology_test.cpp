@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "has_note.h"
 #include "mesh/border.h"
 #include "mesh/vertex_faces.h"
 #include "meshgrain/remesh.h"
@@ -66,9 +67,7 @@ RemeshResult expect_closed_slits(const Mesh& input, const Mesh& whole) {
   made::expect_same_topology(s, mesh_statistics(whole));
   EXPECT_EQ(s.inverted_quads, 0u);
   EXPECT_NEAR(static_cast<double>(s.faces), 400, 4);
-  EXPECT_TRUE(std::ranges::any_of(coarse.report.notes, [](const std::string& note) {
-    return note.starts_with("merged 200 vertices along seams");
-  }));
+  EXPECT_TRUE(made::has_note(coarse, "merged 200 vertices along seams"));
   EXPECT_EQ(coarse.report.input_vertices, input.positions.size());
   return coarse;
 }

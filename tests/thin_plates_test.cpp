@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "has_note.h"
 #include "measure/crossings.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/statistics.h"
@@ -90,9 +91,7 @@ TEST(ThinPlates, RegularityYieldsToSoundFaces) {
     const RemeshResult result = remesh(plate, options);
     EXPECT_EQ(mesh_statistics(result.mesh).inverted_quads, 0u);
     EXPECT_TRUE(find_crossings(result.mesh, Context()).empty());
-    yielding += std::ranges::any_of(result.report.notes, [](const std::string& note) {
-      return note.starts_with("less regular");
-    });
+    yielding += made::has_note(result, "less regular");
   }
   EXPECT_GT(yielding, 0u);
 }

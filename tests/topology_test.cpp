@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "has_note.h"
 #include "made_cells.h"
 #include "made_fields.h"
 #include "measure/crossings.h"
@@ -257,9 +258,7 @@ TEST(Topology, HexagonsSayWhereTheyFallApart) {
   options.face_count = 60;
   const RemeshResult result = remesh(comb, options);
   EXPECT_GT(mesh_statistics(result.mesh).components, 1u);
-  EXPECT_TRUE(std::ranges::any_of(result.report.notes, [](const std::string& note) {
-    return note.starts_with("1 piece fell into ");
-  }));
+  EXPECT_TRUE(made::has_note(result, "1 piece fell into "));
 }
 
 /// Holes and pieces that are nothing but faults take few faces from the rest.

@@ -1,7 +1,6 @@
 #include "measure/face_grid.h"
 
 #include <bit>
-#include <limits>
 #include <numeric>
 
 #include "util/sum.h"

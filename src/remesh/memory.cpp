@@ -176,18 +176,13 @@ void refuse_more_than_limit(const Need& need, const RemeshOptions& options) {
 
 }  // namespace
 
-void check_memory(const Mesh& input, const RemeshOptions& options, const Context& context) {
-  if (options.memory_limit == 0) return;
-  refuse_more_than_limit(needed(input, options, context), options);
-}
-
-bool has_memory_for_retries(const Mesh& input, const RemeshOptions& options,
-                            const Context& context) {
+bool check_memory(const Mesh& input, const RemeshOptions& options, const Context& context) {
   if (options.memory_limit == 0) return true;
+  const Need need = needed(input, options, context);
+  refuse_more_than_limit(need, options);
   // Of parts that are made over several times, with many pairs of faces that pass through each
   // other, the worst took 3.5 times as much.
   constexpr double worst = 4;
-  const Need need = needed(input, options, context);
   return worst * (need.input + need.target) <= static_cast<double>(options.memory_limit);
 }
 

@@ -65,17 +65,19 @@ void note_missed_count(RemeshResult& result, const RemeshOptions& options) {
 }
 
 void note_faults(RemeshResult& result, const FaultCounts& faults) {
-  if (faults.all() == 0) return;
-  const std::string inverted =
-      fmt::format("{} inverted {}", faults.inverted, faults.inverted == 1 ? "quad" : "quads");
-  const std::string crossings =
-      fmt::format("{} of faces that pass through each other",
-                  faults.crossings == 1 ? "a pair" : fmt::format("{} pairs", faults.crossings));
+  std::vector<std::string> left;
+  if (faults.inverted > 0) {
+    left.push_back(
+        fmt::format("{} inverted {}", faults.inverted, faults.inverted == 1 ? "quad" : "quads"));
+  }
+  if (faults.crossings > 0) {
+    left.push_back(
+        fmt::format("{} of faces that pass through each other",
+                    faults.crossings == 1 ? "a pair" : fmt::format("{} pairs", faults.crossings)));
+  }
+  if (left.empty()) return;
   result.report.notes.push_back(fmt::format("could not avoid {}: more and smaller faces may help",
-                                            faults.inverted == 0 ? crossings
-                                            : faults.crossings == 0
-                                                ? inverted
-                                                : inverted + ", and " + crossings));
+                                            fmt::join(left, ", and ")));
 }
 
 }  // namespace meshgrain

@@ -14,6 +14,7 @@
 #include "meshgrain/surface.h"
 #include "meshgrain/triangulate.h"
 #include "remesh/clean_input.h"
+#include "remesh/notes.h"
 #include "remesh/sharpen_part.h"
 #include "remesh/target.h"
 #include "symmetry/border_in_planes.h"
@@ -134,12 +135,13 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const RemeshHal
   const bool is_closed = !planes.empty() && has_border_in_planes_only(input, planes, context);
   // Where a half is a single quad wide, its two sides would be in the plane.
   if (!planes.empty()) options.fine_lattice = false;
-  RemeshResult result = remesh_half(std::move(input), options, context);
+  auto [result, faults] = remesh_half(std::move(input), options, context);
   if (is_closed) put_border_into_planes(result.mesh, planes, context);
   const double near = is_closed ? std::numeric_limits<double>::min()
                                 : 0.2 * edge_lengths(result.mesh, context).mean;
   for (const MirrorPlane& plane : planes) {
     add_mirror_image(result.mesh, plane.axis, near);
+    faults = {2 * faults.inverted, 2 * faults.crossings};
     notes.emplace_back("made symmetric across ").push_back("xyz"[plane.axis]);
   }
   if (before.components > 0 && topology(result.mesh) != before) {
@@ -147,10 +149,11 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const RemeshHal
         "the halves of the input are not alike: a hole, handle or piece that only one "
         "has is lost, or on both sides now");
   }
+  note_faults(result, faults);
   result.report.input_vertices = vertices;
   result.report.input_faces = faces;
   result.report.notes.insert(result.report.notes.end(), notes.begin(), notes.end());
-  return result;
+  return std::move(result);
 }
 
 }  // namespace meshgrain
