@@ -76,9 +76,9 @@ Graph Pipeline::graph_of_cloud() {
   };
   Graph graph = make_graph();
   const double area = std::accumulate(graph.areas.begin(), graph.areas.end(), 0.0);
-  target_.refuse_too_many(area);
+  plan_.target.refuse_too_many(area);
   surface_.normals = graph.normals;
-  const auto apart = static_cast<float>(target_.sparsest_points(options_, area));
+  const auto apart = static_cast<float>(plan_.target.sparsest_points(options_, area));
   if (fill_in(surface_, nearest, apart, context_) > 0) graph = make_graph();
   return graph;
 }
@@ -111,10 +111,11 @@ void Pipeline::drop_coarse_levels() {
 }
 
 void Pipeline::find_borders() {
-  borders_ = find_border_loops(surface_, locked_, context_);
-  if (!divides_borders_) return;
-  const auto locked = locked_between(borders_, surface_, locked_, target_.face_side(area_));
-  borders_ = find_border_loops(surface_, locked, context_);
+  plan_.borders = find_border_loops(surface_, locked_, context_);
+  if (!plan_.divides_borders) return;
+  const auto locked =
+      locked_between(plan_.borders, surface_, locked_, plan_.target.face_side(area_));
+  plan_.borders = find_border_loops(surface_, locked, context_);
 }
 
 void Pipeline::find_lines() {
@@ -124,11 +125,11 @@ void Pipeline::find_lines() {
     soft_guides_.clear();
     lay_guides(mean_length());
   }
-  constraints_ = guide_constraints(graph(), soft_guides_);
+  plan_.constraints = guide_constraints(graph(), soft_guides_);
   if (is_cloud_ && options_.features.align_border) {
     constexpr double faces_across = 2;  // smaller holes are filled
     stage_("features", [&] {
-      const double smallest = faces_across * target_.face_side(area_);
+      const double smallest = faces_across * plan_.target.face_side(area_);
       cloud_border_ = cloud_border(graph(), static_cast<float>(smallest), context_);
     });
     append(border_constraints(cloud_border_));
@@ -146,19 +147,19 @@ void Pipeline::find_lines() {
       if (options_.orientation_energy != OrientationEnergy::extrinsic) options.orient_creases = 1;
       // Triangles cannot follow two creases that meet at right angles.
       if (posy_of(options_.faces) == 6) options.align_creases = 0.3f;
-      const double side = target_.face_side(area_);
-      features_ = find_features(surface_, options, guides_, cuts_.edges, side,
-                                room_for_creases_ * side, context_);
+      const double side = plan_.target.face_side(area_);
+      plan_.features = find_features(surface_, options, guides_, cuts_.edges, side,
+                                     plan_.room_for_creases * side, context_);
     };
     find();
     if (may_leave_out_creases() && !has_marks() && lines_have_no_room()) {
-      room_for_creases_ = no_creases;
+      plan_.room_for_creases = no_creases;
       find();
-      result_.report.notes.emplace_back(
+      plan_.notes.emplace_back(
           "without creases: there are about as many of them as edges of faces of this size");
     }
-    append(feature_constraints(features_));
-    append(guide_constraints(guides_, features_.corners));
+    append(feature_constraints(plan_.features));
+    append(guide_constraints(guides_, plan_.features.corners));
   });
 }
 
@@ -173,13 +174,13 @@ bool Pipeline::has_marks() const {
 
 double Pipeline::share_of_lines() const {
   double length = 0;
-  for (std::size_t line = 0; line < features_.size(); ++line) {
-    for (Index k = features_.begin(line) + 1; k < features_.end(line); ++k) {
-      length += (features_.positions[k] - features_.positions[k - 1]).norm();
+  for (std::size_t line = 0; line < plan_.features.size(); ++line) {
+    for (Index k = plan_.features.begin(line) + 1; k < plan_.features.end(line); ++k) {
+      length += (plan_.features.positions[k] - plan_.features.positions[k - 1]).norm();
     }
   }
   // A mesh of quads has twice as many edges as faces.
-  return length * target_.face_side(area_) / (2 * area_);
+  return length * plan_.target.face_side(area_) / (2 * area_);
 }
 
 bool Pipeline::lines_have_no_room() const {
@@ -191,24 +192,24 @@ bool Pipeline::lines_have_no_room() const {
 bool Pipeline::is_coarse_for_bends() const {
   // Both were measured: beyond them the finer lattice only has more singularities.
   constexpr double most_faces = 1500, little_bent = 0.945;
-  return area_ < most_faces * target_.face_area(area_) &&
+  return area_ < most_faces * plan_.target.face_area(area_) &&
          flattened_share(hierarchy_, 2 * std::pow(mean_length(), 2), context_) < little_bent;
 }
 
 double Pipeline::share_of_holes() const {
-  return meshgrain::share_of_holes(graph(), surface_.faces.size(), area_ / target_.face_area(area_),
-                                   context_);
+  return meshgrain::share_of_holes(graph(), surface_.faces.size(),
+                                   area_ / plan_.target.face_area(area_), context_);
 }
 
 bool Pipeline::may_have_fine_lattice() const {
   return options_.faces == OutputFaces::quads && !is_cloud_ && nodes_are_vertices_ &&
          options_.fine_lattice && options_.guides.empty() && options_.fields == nullptr &&
-         borders_.empty();
+         plan_.borders.empty();
 }
 
 bool Pipeline::has_given_fine_lattice() const {
   return options_.faces == OutputFaces::quads && !is_cloud_ && nodes_are_vertices_ &&
-         has_given_positions(options_) && options_.fields->fine_lattice && borders_.empty();
+         has_given_positions(options_) && options_.fields->fine_lattice && plan_.borders.empty();
 }
 
 bool Pipeline::choose_lattice() {
@@ -218,10 +219,10 @@ bool Pipeline::choose_lattice() {
   }
   if (!may_have_fine_lattice()) return false;
   // A cell of the coarse lattice is two faces wide. Which shares was measured.
-  const double side = target_.face_side(area_);
+  const double side = plan_.target.face_side(area_);
   const auto many_abreast = [&](std::span<const std::uint8_t> on_border) {
-    return share_abreast(features_, on_border, 1.5 * side) > 0.25 ||
-           share_abreast(features_, on_border, 2 * side) > 0.6;
+    return share_abreast(plan_.features, on_border, 1.5 * side) > 0.25 ||
+           share_abreast(plan_.features, on_border, 2 * side) > 0.6;
   };
   has_thin_limbs_ = is_coarse_for_bends();
   constexpr double few_holes = 0.1;
@@ -236,7 +237,7 @@ bool Pipeline::choose_lattice() {
 
 bool Pipeline::has_few_faces() const {
   constexpr double few = 30000;
-  return area_ < few * target_.face_area(area_);
+  return area_ < few * plan_.target.face_area(area_);
 }
 
 void Pipeline::refine_for_details() {
@@ -261,31 +262,31 @@ bool Pipeline::has_branches() const {
 void Pipeline::size_faces() {
   Sizing sizing = options_.sizing;
   sizing.point = frame_.inside(sizing.point);
-  const EdgeLength relative = relative_edge_lengths(hierarchy_, surface_, features_, sizing,
-                                                    target_.face_side(area_), context_);
-  lengths_ = target_.edge_lengths(graph(), relative, growth(), context_);
+  const EdgeLength relative = relative_edge_lengths(hierarchy_, surface_, plan_.features, sizing,
+                                                    plan_.target.face_side(area_), context_);
+  plan_.lengths = plan_.target.edge_lengths(graph(), relative, growth(), context_);
   const double more_faces = faces_to_ask_for();
-  if (borders_.empty()) {
-    lengths_ = scaled(lengths_, std::sqrt(1 / more_faces));
+  if (plan_.borders.empty()) {
+    plan_.lengths = scaled(plan_.lengths, std::sqrt(1 / more_faces));
     return;
   }
-  free_lengths_ = lengths_;
+  free_lengths_ = plan_.lengths;
   // The lattice of pure quads is twice as coarse as their edges.
   const double sides = options_.faces == OutputFaces::quads ? 2 : 1;
-  border_spacing_ = border_spacing(borders_, graph(), mean_length(), sides, context_);
+  border_spacing_ = border_spacing(plan_.borders, graph(), mean_length(), sides, context_);
   fit_lengths_to_borders(more_faces);
 }
 
 bool Pipeline::has_quads_alone() const {
-  return options_.faces == OutputFaces::quads && lattice_faces_ != options_.faces;
+  return options_.faces == OutputFaces::quads && plan_.lattice_faces != options_.faces;
 }
 
 double Pipeline::faces_to_ask_for() const {
   if (options_.edge_length > 0) return 1;
   // A lattice spans what bends within a few cells, as its faces will. How many was measured.
-  const double cells = lattice_faces_ == OutputFaces::quads           ? 2
-                       : lattice_faces_ == OutputFaces::quad_dominant ? 3
-                                                                      : 4;
+  const double cells = plan_.lattice_faces == OutputFaces::quads           ? 2
+                       : plan_.lattice_faces == OutputFaces::quad_dominant ? 3
+                                                                           : 4;
   // Where its odd faces become quads there are more of these than cells. By how much was measured.
   const double faces_a_cell = has_quads_alone() ? 1.1 : 1;
   const double left = flattened_share(hierarchy_, cells * std::pow(mean_length(), 2), context_);
@@ -293,12 +294,12 @@ double Pipeline::faces_to_ask_for() const {
 }
 
 bool Pipeline::fit_lengths_to_borders(double more_faces) {
-  const double cells = std::pow(length_for_count(graph(), lengths_, 1, 1), 2) * more_faces;
+  const double cells = std::pow(length_for_count(graph(), plan_.lengths, 1, 1), 2) * more_faces;
   const auto fit = [&](double factor) {
     const EdgeLength lengths =
         fit_to_borders(scaled(free_lengths_, factor), border_spacing_, growth());
-    lengths_ = graded(graph(), lengths, growth(), context_);
-    return length_for_count(graph(), lengths_, 1, cells);
+    plan_.lengths = graded(graph(), lengths, growth(), context_);
+    return length_for_count(graph(), plan_.lengths, 1, cells);
   };
   if (options_.edge_length > 0) {
     fit(1);
@@ -320,9 +321,9 @@ bool Pipeline::fit_lengths_to_borders(double more_faces) {
 }
 
 void Pipeline::refine_for_sizes() {
-  if (is_cloud_ || splits_only_once(options_) || lengths_.uniform()) return;
-  const double share = target_.longest_edge();
-  std::vector<float> longest = scaled(lengths_, share).values;
+  if (is_cloud_ || splits_only_once(options_) || plan_.lengths.uniform()) return;
+  const double share = plan_.target.longest_edge();
+  std::vector<float> longest = scaled(plan_.lengths, share).values;
   join_cuts();
   longest.resize(surface_.positions.size());
   if (!stage_("subdivide", [&] { return subdivide(surface_, longest, context_); })) {
@@ -330,27 +331,27 @@ void Pipeline::refine_for_sizes() {
   }
   stage_("order", [&] {
     const std::vector<Index> order = put_in_order();
-    lengths_.values.resize(order.size());
-    for (std::size_t i = 0; i < order.size(); ++i) lengths_.values[i] = longest[order[i]];
-    lengths_ = scaled(lengths_, 1 / share);
+    plan_.lengths.values.resize(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) plan_.lengths.values[i] = longest[order[i]];
+    plan_.lengths = scaled(plan_.lengths, 1 / share);
   });
   build_graph();
-  for (std::size_t v = lengths_.values.size(); v < cuts_.sources.size(); ++v) {
-    lengths_.values.push_back(lengths_[cuts_.sources[v]]);
+  for (std::size_t v = plan_.lengths.values.size(); v < cuts_.sources.size(); ++v) {
+    plan_.lengths.values.push_back(plan_.lengths[cuts_.sources[v]]);
   }
   find_lines();
   build_levels();
-  if (!borders_.empty()) return size_faces();
-  lengths_ = graded(graph(), lengths_, growth(), context_);
+  if (!plan_.borders.empty()) return size_faces();
+  plan_.lengths = graded(graph(), plan_.lengths, growth(), context_);
 }
 
 void Pipeline::orient() {
   stage_("orientation field", [&] {
     if (options_.fields != nullptr) {
       const FieldTransfer transfer(*options_.fields, graph(), frame_, context_);
-      fields().orientation = transfer.orientation();
+      plan_.orientation = transfer.orientation();
       if (transfer.is_of_another_surface(context_)) {
-        result_.report.notes.emplace_back(
+        plan_.notes.emplace_back(
             "the given fields are of another surface: each value comes from the nearest of its "
             "vertices, which is far away");
       }
@@ -358,32 +359,32 @@ void Pipeline::orient() {
     }
     OrientationOptions orientation;
     static_cast<SolverOptions&>(orientation) = options_.solver;
-    orientation.seed += other_start_;
-    if (is_thorough_) orientation.coarse_factor = 8;
+    orientation.seed += plan_.other_start;
+    if (plan_.is_thorough) orientation.coarse_factor = 8;
     orientation.rosy = options_.rosy != 0 ? options_.rosy : posy_of(options_.faces);
     orientation.energy = options_.orientation_energy;
     const auto edge_length = static_cast<float>(mean_length());
     // An axis has no sign, which a field of arrows needs.
     const float bends = orientation.rosy == 1 ? 0 : options_.curvature.bends;
-    auto constraints =
-        bend_constraints(hierarchy_, surface_, around_, features_, edge_length, bends, context_);
+    auto constraints = bend_constraints(hierarchy_, surface_, around_, plan_.features, edge_length,
+                                        bends, context_);
     const auto curvature =
         curvature_constraints(graph(), edge_length, options_.curvature, context_);
     constraints.insert(constraints.end(), curvature.begin(), curvature.end());
-    constraints.insert(constraints.end(), constraints_.orientation.begin(),
-                       constraints_.orientation.end());
+    constraints.insert(constraints.end(), plan_.constraints.orientation.begin(),
+                       plan_.constraints.orientation.end());
     const auto solve = [&] {
       const auto solver = OrientationSolver::create(hierarchy_, orientation, constraints);
       while (solver->step(context_)) context_.progress("orientation field", solver->progress());
-      fields().orientation = solver->field();
-      result_.report.orientation_energies = solver->energies();
+      plan_.orientation = solver->field();
+      plan_.orientation_energies = solver->energies();
     };
     solve();
     // Few creases are: crosses turn to them by themselves, unless the surface bends another way.
     constexpr double many = 0.08;
     if (orientation.rosy == 4 &&
-        share_askew(features_, graph().normals, fields().orientation) > many) {
-      const auto held = hold_to_lines(features_);
+        share_askew(plan_.features, graph().normals, plan_.orientation) > many) {
+      const auto held = hold_to_lines(plan_.features);
       constraints.insert(constraints.end(), held.begin(), held.end());
       solve();
     }
@@ -393,22 +394,22 @@ void Pipeline::orient() {
 void Pipeline::note_scraps() {
   constexpr std::ptrdiff_t many = 10;
   if (is_cloud_ || options_.min_component > 0) return;
-  const double face = target_.face_area(area_);
+  const double face = plan_.target.face_area(area_);
   const auto scraps = std::ranges::count_if(piece_areas(graph(), context_),
                                             [&](double area) { return area < face; });
   if (scraps < many) return;
-  result_.report.notes.push_back(std::to_string(scraps) +
-                                 " pieces are smaller than a face, and take faces all the same: "
-                                 "--min-component 1 leaves them out");
+  plan_.notes.push_back(std::to_string(scraps) +
+                        " pieces are smaller than a face, and take faces all the same: "
+                        "--min-component 1 leaves them out");
 }
 
 void Pipeline::note_odd_borders() {
-  if (borders_.empty() || options_.faces != OutputFaces::quads) return;
-  const Faces& faces = extraction_.mesh.faces;
+  if (plan_.borders.empty() || options_.faces != OutputFaces::quads) return;
+  const Faces& faces = made_.extraction.mesh.faces;
   std::size_t triangles = 0;
   for (std::size_t f = 0; f < faces.size(); ++f) triangles += faces.degree(f) == 3;
   if (triangles == 0) return;
-  result_.report.notes.push_back(
+  plan_.notes.push_back(
       std::to_string(triangles) + (triangles == 1 ? " triangle" : " triangles") +
       ": quads alone do not meet the borders that stay (none meet an odd number of edges)");
 }
@@ -416,58 +417,67 @@ void Pipeline::note_odd_borders() {
 void Pipeline::note_parted_hexagons() {
   if (options_.faces != OutputFaces::hexagons || is_cloud_) return;
   const std::size_t before = piece_areas(graph(), context_).size();
-  const std::size_t after = mesh_statistics(extraction_.mesh).components;
+  const std::size_t after = mesh_statistics(made_.extraction.mesh).components;
   if (after <= before) return;
-  result_.report.notes.push_back(fmt::format(
+  plan_.notes.push_back(fmt::format(
       "{} {} fell into {}: hexagons leave out what lies along a border, and more of them "
       "would leave out less",
       before, before == 1 ? "piece" : "pieces", after));
 }
 
 void Pipeline::report_fields() {
-  const std::vector<float>& lengths = fields().position.edge_length.values;
+  const std::vector<float>& lengths = made_.position.edge_length.values;
   result_.report.edge_length = std::accumulate(lengths.begin(), lengths.end(), 0.0) /
                                static_cast<double>(lengths.size()) * frame_.scale;
   if (!options_.count_singularities || is_cloud_ || !nodes_are_vertices_) return;
   stage_("singularities", [&] {
     result_.report.orientation_singularities =
-        orientation_singularities(surface_, graph().normals, fields().orientation, context_).size();
+        orientation_singularities(surface_, graph().normals, plan_.orientation, context_).size();
     result_.report.position_singularities =
-        position_singularities(surface_, graph(), fields().orientation, fields().position,
+        position_singularities(surface_, graph(), plan_.orientation, made_.position,
                                options_.position_energy, context_)
             .size();
   });
 }
 
 void Pipeline::aim_at(OutputFaces lattice_faces) {
-  lattice_faces_ = lattice_faces;
-  target_ = Target(wanted_, lattice_faces, clean_vertices_, frame_.scale);
+  plan_.lattice_faces = lattice_faces;
+  plan_.target = Target(wanted_, lattice_faces, clean_vertices_, frame_.scale);
 }
 
 void Pipeline::change_target(const RemeshOptions& options) {
-  const double room_before = std::exchange(room_for_creases_, 0);
-  divides_borders_ = false;
-  const bool started_elsewhere = std::exchange(other_start_, 0) != 0;
-  const bool was_thorough = std::exchange(is_thorough_, false);
+  const double room_before = std::exchange(plan_.room_for_creases, 0);
+  plan_.divides_borders = false;
+  const bool started_elsewhere = std::exchange(plan_.other_start, 0) != 0;
+  const bool was_thorough = std::exchange(plan_.is_thorough, false);
   wanted_ = options;
   aim_at(options.faces);
   find_lines();
   choose_lattice();
   size_faces();
-  keeps_singularities_.clear();
+  plan_.keeps_singularities.clear();
   inherent_crossings_.reset();  // what is near to them depends on the size of a face
-  if (room_before == room_for_creases_ && !started_elsewhere && !was_thorough) return;
+  if (room_before == plan_.room_for_creases && !started_elsewhere && !was_thorough) return;
   complete_levels();
   orient();
 }
 
+RemeshReport Pipeline::report() const {
+  RemeshReport report = result_.report;
+  report.notes = plan_.notes;
+  report.orientation_energies = plan_.orientation_energies;
+  report.position_energies = made_.position_energies;
+  return report;
+}
+
 RemeshResult Pipeline::take_mesh(const RemeshReport& prepared) {
   RemeshResult level;
-  level.mesh = std::move(extraction_.mesh);
+  level.mesh = std::move(made_.extraction.mesh);
   leave(frame_, level.mesh);
-  level.report = std::exchange(result_.report, prepared);
-  extraction_ = {};
-  is_split_ = false;
+  level.report = report();
+  result_.report = prepared;
+  plan_.notes = prepared.notes;
+  made_ = {};
   return level;
 }
 
@@ -476,20 +486,24 @@ RemeshResult Pipeline::result() && {
     surface_ = Mesh();
     surface_.positions = graph().positions;
   }
-  fields().surface = std::move(surface_);
-  fields().surface.normals = graph().normals;
-  fields().fine_lattice = has_quads_alone();
-  leave(frame_, fields());
-  result_.mesh = std::move(extraction_.mesh);
+  result_.report = report();
+  Fields& fields = result_.fields;
+  fields.surface = std::move(surface_);
+  fields.surface.normals = graph().normals;
+  fields.orientation = std::move(plan_.orientation);
+  fields.position = std::move(made_.position);
+  fields.fine_lattice = has_quads_alone();
+  leave(frame_, fields);
+  result_.mesh = std::move(made_.extraction.mesh);
   leave(frame_, result_.mesh);
   return std::move(result_);
 }
 
 void Pipeline::append(const FeatureConstraints& more) {
-  constraints_.orientation.insert(constraints_.orientation.end(), more.orientation.begin(),
-                                  more.orientation.end());
-  constraints_.position.insert(constraints_.position.end(), more.position.begin(),
-                               more.position.end());
+  plan_.constraints.orientation.insert(plan_.constraints.orientation.end(),
+                                       more.orientation.begin(), more.orientation.end());
+  plan_.constraints.position.insert(plan_.constraints.position.end(), more.position.begin(),
+                                    more.position.end());
 }
 
 }  // namespace meshgrain

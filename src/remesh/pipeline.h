@@ -44,7 +44,7 @@ class Pipeline {
   void keep_creases() { keeps_creases_ = true; }
   /// That creases nobody asked for need, in sides of a face: those with less are left out (see
   /// feature_edges()), and all of them if it is infinite.
-  double room_for_creases() const { return room_for_creases_; }
+  double room_for_creases() const { return plan_.room_for_creases; }
   /// Whether faces follow any.
   bool follows_creases() const;
 
@@ -122,7 +122,7 @@ class Pipeline {
   bool has_marks() const;
   bool is_sharpened() const { return is_sharpened_; }
   /// The mean side of a face, in input units.
-  double face_side() const { return target_.face_side(area_) * frame_.scale; }
+  double face_side() const { return plan_.target.face_side(area_) * frame_.scale; }
 
   /// If quads alone could not meet borders that stay.
   void note_odd_borders();
@@ -139,7 +139,7 @@ class Pipeline {
 
   /// The mesh alone; the rest stays for the next one.
   RemeshResult take_mesh(const RemeshReport& prepared);
-  const RemeshReport& report() const { return result_.report; }
+  RemeshReport report() const;
   RemeshResult result() &&;
 
  private:
@@ -167,26 +167,35 @@ class Pipeline {
   std::size_t inverted_faces() const;
   /// Inverted faces, and pairs that pass through each other.
   std::size_t faults() const;
-  /// The faces, and what they were made from.
-  struct Attempt {
-    Extraction extraction;
-    bool is_split;
-    PositionField position;
-    std::vector<EnergyRecord> position_energies;
+  /// What faces are made from, as far as other faces may be made from something else.
+  struct Plan {
+    Target target;
+    // What the cells of the lattice become: OutputFaces::quads are four each. Where they are to be
+    // quads themselves, it is quad_dominant, and few of the others are left for extraction to mend.
+    OutputFaces lattice_faces = OutputFaces::quads;
+    EdgeLength lengths;
+    std::uint64_t other_start = 0;  // of both fields; 0 for the usual one
+    bool is_thorough = false;       // the orientation field, over flat sides as well
     OrientationField orientation;
     std::vector<EnergyRecord> orientation_energies;
-    std::uint64_t other_start;
-    bool is_thorough;
-    double room_for_creases;
-    bool divides_borders;
-    BorderLoops borders;
+    std::vector<std::uint8_t> keeps_singularities;  // the lattice; see ExtractOptions
+    double room_for_creases = 0;                    // see room_for_creases()
     FeatureLines features;
+    bool divides_borders = false;
+    BorderLoops borders;  // that stay
     FeatureConstraints constraints;
-    OutputFaces lattice_faces;
-    Target target;
-    EdgeLength lengths;
-    std::vector<std::uint8_t> keeps_singularities;
     std::vector<std::string> notes;
+  };
+  /// The faces, and the positions that they were read from.
+  struct FacesMade {
+    Extraction extraction;
+    bool is_split = false;  // into the quads that are written
+    PositionField position;
+    std::vector<EnergyRecord> position_energies;
+  };
+  struct Attempt {
+    Plan plan;
+    FacesMade made;
   };
   /// Faces before they are smoothed.
   struct RoughFaces {
@@ -245,7 +254,7 @@ class Pipeline {
   /// that have no room, then without any. Marked edges, such as the borders of materials, go with
   /// them. Returns whether that is better.
   bool try_without_creases(const Flaws& before);
-  bool leaves_out_creases() const { return room_for_creases_ == no_creases; }
+  bool leaves_out_creases() const { return plan_.room_for_creases == no_creases; }
   /// Whether there may be creases that nobody asked for.
   bool may_leave_out_creases() const;
   /// Of all edges of the faces, about those that follow lines.
@@ -303,8 +312,8 @@ class Pipeline {
   void finish_borders();
   SmoothOptions smooth_options() const;
   /// Of the lattice.
-  double mean_length() const { return target_.edge_length(area_); }
-  double growth() const { return target_.growth(options_.sizing.grading); }
+  double mean_length() const { return plan_.target.edge_length(area_); }
+  double growth() const { return plan_.target.growth(options_.sizing.grading); }
   const Graph& graph() const { return hierarchy_.levels[0]; }
   /// What faces are finished over: their nodes are vertices of the surface then, or points.
   const Graph& finishing_graph() const {
@@ -314,7 +323,6 @@ class Pipeline {
   void drop_coarse_levels();
   /// Those again, if they were dropped.
   void complete_levels();
-  Fields& fields() { return result_.fields; }
   PositionField solve_positions();
 
   /// What regularity may cost (ExtractOptions): the lattice of pure quads is twice as coarse as
@@ -327,16 +335,13 @@ class Pipeline {
   RemeshResult result_;
   Stages stage_;
   Frame frame_;
-  Target target_;
+  Plan plan_;
+  FacesMade made_;
   std::vector<BorderNode> cloud_border_;
   bool is_cloud_, nodes_are_vertices_;
-  // What the cells of the lattice become: OutputFaces::quads are four each. Where they are to be
-  // quads themselves, it is quad_dominant, and few of the others are left for extraction to mend.
-  OutputFaces lattice_faces_ = OutputFaces::quads;
   bool has_thin_limbs_ = false;     // for its faces, see is_coarse_for_bends()
   RemeshOptions wanted_;            // what the target goes by
   double regularity_;               // that is aimed at
-  std::uint64_t other_start_ = 0;   // of both fields; 0 for the usual one
   std::size_t clean_vertices_ = 0;  // of the input, without what clean_up() takes out
   bool is_in_order_ = false;        // the surface, since it was read
   bool is_sharpened_ = false;
@@ -351,29 +356,19 @@ class Pipeline {
   Hierarchy hierarchy_;
   Graph graph_of_vertices_;  // if that of the hierarchy is of faces
   double area_ = 0;
-  EdgeLength lengths_;
   std::vector<std::uint8_t>
-      locked_;           // one flag a vertex of the surface; of RemeshOptions::lock_borders
-  BorderLoops borders_;  // that stay
+      locked_;  // one flag a vertex of the surface; of RemeshOptions::lock_borders
   BorderSpacing border_spacing_;
-  EdgeLength free_lengths_;            // what lengths_ would be without these borders
+  EdgeLength free_lengths_;            // what lengths would be without these borders
   GuideLines guides_;                  // that edges follow
   std::vector<GuideRun> soft_guides_;  // that fields are drawn to
-  bool is_thorough_ = false;           // the orientation field, over flat sides as well
-  double room_for_creases_ = 0;        // see room_for_creases()
   static constexpr double no_creases = std::numeric_limits<double>::infinity();
   bool has_tried_without_creases_ = false;  // for the faces that there are
   bool only_compares_ = false;              // attempts, and mends none
   RoughFaces rough_;                        // of those that were smoothed last
-  bool divides_borders_ = false;
-  FeatureLines features_;
-  FeatureLines border_lines_;  // which vertices slide along if the graph is of faces
-  FeatureConstraints constraints_;
-  std::vector<std::uint8_t> keeps_singularities_;  // the lattice; see ExtractOptions
-  Extraction extraction_;
-  bool is_split_ = false;               // into the quads that are written
-  bool may_have_faults_ = true;         // what is done after mend_flaws() adds none
-  std::optional<FaultCounts> to_beat_;  // see beat()
+  FeatureLines border_lines_;               // which vertices slide along if the graph is of faces
+  bool may_have_faults_ = true;             // what is done after mend_flaws() adds none
+  std::optional<FaultCounts> to_beat_;      // see beat()
   bool keeps_border_ = false, keeps_creases_ = false;
 };
 

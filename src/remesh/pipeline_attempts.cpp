@@ -20,21 +20,23 @@
 namespace meshgrain {
 
 std::size_t Pipeline::inverted_faces() const {
-  return mesh_statistics(extraction_.mesh).inverted_quads;
+  return mesh_statistics(made_.extraction.mesh).inverted_quads;
 }
 
 std::size_t Pipeline::faults() const {
-  return inverted_faces() + find_crossings(extraction_.mesh, context_).size();
+  return inverted_faces() + find_crossings(made_.extraction.mesh, context_).size();
 }
 
 LostSurface Pipeline::lost_surface() const {
   if (is_cloud_ || !nodes_are_vertices_) return {};
-  const float side = lattice_faces_ == OutputFaces::quads ? 0.5f : 1;  // of an edge of the lattice
-  const VertexFaces around = vertex_faces(extraction_.mesh, context_);
+  const float side =
+      plan_.lattice_faces == OutputFaces::quads ? 0.5f : 1;  // of an edge of the lattice
+  const VertexFaces around = vertex_faces(made_.extraction.mesh, context_);
   LostSurface lost;
-  lost.nodes = find_bare_nodes(extraction_, around, graph(), scaled(lengths_, side), context_);
+  lost.nodes =
+      find_bare_nodes(made_.extraction, around, graph(), scaled(plan_.lengths, side), context_);
   for (const Index i : lost.nodes) lost.faces += graph().areas[i];
-  lost.faces /= target_.face_area(area_);
+  lost.faces /= plan_.target.face_area(area_);
   return lost;
 }
 
@@ -48,9 +50,9 @@ bool Pipeline::may_be_irregular() const {
 
 Flaws Pipeline::flaws(double lost_faces) {
   constexpr float nearly_flat = 0.1f;  // beyond it a quad is as good as any
-  const float flatness = std::max(0.0f, nearly_flat - least_jacobian(extraction_.mesh));
+  const float flatness = std::max(0.0f, nearly_flat - least_jacobian(made_.extraction.mesh));
   const std::size_t inverted = flatness > 0 ? inverted_faces() : 0;
-  auto crossings = find_crossings(extraction_.mesh, context_);
+  auto crossings = find_crossings(made_.extraction.mesh, context_);
   const std::size_t all = crossings.size();
   const FaultCounts faults{inverted, own(std::move(crossings)).size()};
   return {lost_faces <= LostSurface::little ? 0 : lost_faces, flatness, faults, inverted + all};
@@ -59,13 +61,13 @@ Flaws Pipeline::flaws(double lost_faces) {
 std::vector<std::array<Index, 2>> Pipeline::own(std::vector<std::array<Index, 2>> crossings) {
   if (crossings.empty() || is_cloud_) return {};  // of a cloud it is not known
   if (!inherent_crossings_) {
-    inherent_crossings_.emplace(surface_, cuts_, target_.face_side(area_), context_);
+    inherent_crossings_.emplace(surface_, cuts_, plan_.target.face_side(area_), context_);
   }
   const auto node = [&](Index f) {
-    return extraction_.nodes[std::as_const(extraction_.mesh.faces)[f][0]];
+    return made_.extraction.nodes[std::as_const(made_.extraction.mesh.faces)[f][0]];
   };
   std::erase_if(crossings, [&](const auto& pair) {
-    return inherent_crossings_->are_near(extraction_.mesh, pair) ||
+    return inherent_crossings_->are_near(made_.extraction.mesh, pair) ||
            (nodes_are_vertices_ && inherent_crossings_->do_touch(node(pair[0]), node(pair[1])));
   });
   return crossings;
@@ -75,24 +77,25 @@ Faults Pipeline::find_faults() {
   Faults faults;
   // Of many faces, to look for crossings as well takes too long.
   constexpr std::size_t few = 100000;
-  const bool has_any = may_have_faults_ && (extraction_.mesh.faces.size() < few ||
-                                            least_jacobian(extraction_.mesh) <= 0);
+  const bool has_any = may_have_faults_ && (made_.extraction.mesh.faces.size() < few ||
+                                            least_jacobian(made_.extraction.mesh) <= 0);
   if (!has_any) return faults;
-  const Faces& faces = extraction_.mesh.faces;
+  const Faces& faces = made_.extraction.mesh.faces;
   const auto add = [&](Index f) {
     for (const Index v : faces[f]) {
-      const Index node = extraction_.nodes[v];
+      const Index node = made_.extraction.nodes[v];
       faults.nodes.push_back(cuts_.empty() ? node : cuts_.sources[node]);
     }
   };
   for (Index f = 0; f < faces.size(); ++f) {
-    if (faces.degree(f) != 4 || scaled_jacobian(faces[f], extraction_.mesh.positions) > 0) continue;
+    if (faces.degree(f) != 4 || scaled_jacobian(faces[f], made_.extraction.mesh.positions) > 0)
+      continue;
     ++faults.inverted;
     add(f);
   }
   sort_unique(faults.nodes);
   faults.nodes_of_inverted = faults.nodes;
-  for (const auto& [f, g] : own(find_crossings(extraction_.mesh, context_))) {
+  for (const auto& [f, g] : own(find_crossings(made_.extraction.mesh, context_))) {
     ++faults.crossings;
     add(f);
     add(g);
@@ -104,10 +107,11 @@ Faults Pipeline::find_faults() {
 void Pipeline::smooth_faces() {
   const auto are_crumpled = [&] {
     constexpr std::size_t few = 8;  // 40 meshes with more of them all had too many in the end
-    return inverted_faces() > extraction_.mesh.faces.size() / few;
+    return inverted_faces() > made_.extraction.mesh.faces.size() / few;
   };
   has_tried_without_creases_ = false;
-  const bool creases_may_yield = may_make_others() && may_leave_out_creases() && borders_.empty();
+  const bool creases_may_yield =
+      may_make_others() && may_leave_out_creases() && plan_.borders.empty();
   if (!creases_may_yield) {
     smooth_faces_unless({});
   } else if (!smooth_faces_unless(are_crumpled)) {
@@ -115,8 +119,8 @@ void Pipeline::smooth_faces() {
     only_compares_ = true;
     if (try_without_creases(flaws(0))) rough = std::move(rough_);
     only_compares_ = false;
-    extraction_ = std::move(rough.extraction);
-    is_split_ = rough.is_split;
+    made_.extraction = std::move(rough.extraction);
+    made_.is_split = rough.is_split;
     smooth_faces_unless({});
   }
   rough_ = {};
@@ -129,7 +133,7 @@ bool Pipeline::smooth_faces_unless(const std::function<bool()>& are_crumpled) {
   LostSurface least;
   for (int attempt = 0; may_try && attempt < most_attempts; ++attempt) {
     if (attempt > 0 && !make_faces_again()) break;
-    rough_ = {extraction_, is_split_};
+    rough_ = {made_.extraction, made_.is_split};
     LostSurface lost;
     bool is_in_vain = false;
     const auto is_worth_mending = [&] {
@@ -142,8 +146,8 @@ bool Pipeline::smooth_faces_unless(const std::function<bool()>& are_crumpled) {
     if (is_in_vain) return false;
     keep_singularities_around(lost.nodes);
     Attempt now = take_attempt();
-    now.extraction = std::move(rough_.extraction);
-    now.is_split = rough_.is_split;
+    now.made.extraction = std::move(rough_.extraction);
+    now.made.is_split = rough_.is_split;
     if (attempt == 0 || lost.is_considerably_less_than(least)) {
       best = std::move(now);
       least = std::move(lost);
@@ -151,12 +155,12 @@ bool Pipeline::smooth_faces_unless(const std::function<bool()>& are_crumpled) {
   }
   if (may_try) put_back(std::move(best));
   if (!are_crumpled) return smooth_faces_if({});
-  rough_ = {extraction_, is_split_};
+  rough_ = {made_.extraction, made_.is_split};
   return smooth_faces_if([&] { return !are_crumpled(); });
 }
 
 void Pipeline::recover_lost_surface(const LostSurface& lost, Flaws& left) {
-  const bool was_tried = !keeps_singularities_.empty();  // before the faces were mended
+  const bool was_tried = !plan_.keeps_singularities.empty();  // before the faces were mended
   if (lost.faces <= LostSurface::little || !may_be_irregular() || was_tried) return;
   keep_singularities_around(lost.nodes);
   Flaws now;
@@ -171,7 +175,7 @@ void Pipeline::recover_lost_surface(const LostSurface& lost, Flaws& left) {
 
 void Pipeline::keep_singularities_around(const std::vector<Index>& nodes) {
   constexpr double sides = 3.5;
-  const auto reach = static_cast<float>(sides * target_.face_side(area_));
+  const auto reach = static_cast<float>(sides * plan_.target.face_side(area_));
   std::vector<float> distance(graph().size(), 2 * reach);
   std::vector<std::pair<float, Index>> sources;
   for (const Index i : nodes) sources.push_back({distance[i] = 0, i});
@@ -182,9 +186,9 @@ void Pipeline::keep_singularities_around(const std::vector<Index>& nodes) {
     return true;
   };
   spread(graph(), distance, sources, 1, lower, context_);
-  keeps_singularities_.resize(graph().size(), 0);
+  plan_.keeps_singularities.resize(graph().size(), 0);
   for (std::size_t i = 0; i < distance.size(); ++i) {
-    if (distance[i] < reach) keeps_singularities_[i] = 1;
+    if (distance[i] < reach) plan_.keeps_singularities[i] = 1;
   }
 }
 
@@ -192,13 +196,14 @@ bool Pipeline::follows_creases() const {
   if (!may_leave_out_creases()) return false;
   const auto on_rim = rim_vertices(surface_, context_);
   const auto is_inside = [&](Index v) { return on_rim[v] == 0; };
-  return std::ranges::any_of(features_.vertices, is_inside);
+  return std::ranges::any_of(plan_.features.vertices, is_inside);
 }
 
 bool Pipeline::try_without_creases(const Flaws& before) {
-  const std::size_t faces = extraction_.mesh.faces.size();
+  const std::size_t faces = made_.extraction.mesh.faces.size();
   const bool are_too_fine =
-      before.faults.all() > 0 && target_.finished_ratio(extraction_.mesh) > 1 + target_.tolerance();
+      before.faults.all() > 0 &&
+      plan_.target.finished_ratio(made_.extraction.mesh) > 1 + plan_.target.tolerance();
   // Where there are more than two faults a face, nothing helps.
   if (!(before.are_hopeless(faces) || are_too_fine) || before.faults.all() > 2 * faces)
     return false;
@@ -207,21 +212,21 @@ bool Pipeline::try_without_creases(const Flaws& before) {
   // Those that are everywhere, as steps of voxels are, are no better where some are left. Of 23
   // parts of machines, lines of one take more.
   constexpr double everywhere = 0.5;  // of all edges
-  const double least_room = share_of_lines() > everywhere ? no_creases : room_for_creases_;
+  const double least_room = share_of_lines() > everywhere ? no_creases : plan_.room_for_creases;
   has_tried_without_creases_ = true;
   for (const double room : {1.0, 2.0, no_creases}) {
-    if (room < least_room || room == room_for_creases_) continue;
+    if (room < least_room || room == plan_.room_for_creases) continue;
     if (room == no_creases && keeps_creases_) continue;
     const auto leave_out = [&] {
-      room_for_creases_ = room;
-      keeps_singularities_.clear();
+      plan_.room_for_creases = room;
+      plan_.keeps_singularities.clear();
       aim_at(options_.faces);
       find_lines();
       complete_levels();
       orient();
     };
     if (!try_again(is_better, leave_out)) continue;
-    std::vector<std::string>& notes = result_.report.notes;
+    std::vector<std::string>& notes = plan_.notes;
     std::erase_if(notes, [](const auto& note) { return note.starts_with("without some creases"); });
     notes.emplace_back(fmt::format(
         "without {}creases{}: faces of this size that follow them would {}pass through each other",
@@ -233,16 +238,17 @@ bool Pipeline::try_without_creases(const Flaws& before) {
 }
 
 bool Pipeline::try_divided_borders(const Flaws& before) {
-  if (borders_.empty() || divides_borders_ || before.faults.all() == 0) return false;
-  const auto locked = locked_between(borders_, surface_, locked_, target_.face_side(area_));
+  if (plan_.borders.empty() || plan_.divides_borders || before.faults.all() == 0) return false;
+  const auto locked =
+      locked_between(plan_.borders, surface_, locked_, plan_.target.face_side(area_));
   if (locked == locked_) return false;
   const auto is_better = [&] { return 2 * flaws(0).faults.all() <= before.faults.all(); };
   const auto divide = [&] {
-    divides_borders_ = true;
+    plan_.divides_borders = true;
     find_lines();
   };
   if (!try_again(is_better, divide)) return false;
-  result_.report.notes.emplace_back(
+  plan_.notes.emplace_back(
       "divided edges of the border that are far longer than a face: faces that meet them as they "
       "are would be folded or pass through each other");
   return true;
@@ -259,14 +265,14 @@ bool Pipeline::mend_flaws() {
   if (!may_be_of_use(left.faults)) return false;
   recover_lost_surface(lost, left);
   // A finer lattice costs half as many irregular vertices again.
-  const bool is_coarse = lattice_faces_ == OutputFaces::quads;
-  const bool has_lost = !keeps_singularities_.empty();  // or had
+  const bool is_coarse = plan_.lattice_faces == OutputFaces::quads;
+  const bool has_lost = !plan_.keeps_singularities.empty();  // or had
   if (!left.any() || !has_lost || !is_coarse || !may_have_fine_lattice() || has_branches()) {
     may_have_faults_ = try_other_starts(left).faults.all() > 0;
     return false;
   }
-  take_attempt();  // nothing of it is needed any more
-  keeps_singularities_.clear();
+  made_ = {};
+  plan_.keeps_singularities.clear();
   aim_at(OutputFaces::quad_dominant);
   const std::size_t nodes = graph().size();
   refine_for_lattice();
@@ -278,7 +284,7 @@ bool Pipeline::mend_flaws() {
 }
 
 Flaws Pipeline::try_other_starts(Flaws before) {
-  const std::size_t faces = extraction_.mesh.faces.size();
+  const std::size_t faces = made_.extraction.mesh.faces.size();
   if (before.are_hopeless(faces) || before.are_inherent(faces)) return before;
   constexpr std::uint64_t most = 2;
   for (std::uint64_t start = 1; start <= most && before.any(); ++start) {
@@ -288,7 +294,7 @@ Flaws Pipeline::try_other_starts(Flaws before) {
       return now.are_fewer_than(before);
     };
     const auto start_there = [&] {
-      other_start_ = start;
+      plan_.other_start = start;
       complete_levels();
       orient();
     };
@@ -298,12 +304,13 @@ Flaws Pipeline::try_other_starts(Flaws before) {
 }
 
 void Pipeline::try_coarser_lattice() {
-  if (!options_.retries || lattice_faces_ == options_.faces || has_given_positions(options_))
+  if (!options_.retries || plan_.lattice_faces == options_.faces || has_given_positions(options_))
     return;
   constexpr double hopeless = 0.2;
   if (inverted_faces() == 0 || share_of_holes() > hopeless) return;
   const Flaws before = flaws(0);
-  if (!may_be_of_use(before.faults) || before.are_inherent(extraction_.mesh.faces.size())) return;
+  if (!may_be_of_use(before.faults) || before.are_inherent(made_.extraction.mesh.faces.size()))
+    return;
   try_again([&] { return faults() < before.all_faults; }, [&] { aim_at(options_.faces); });
 }
 
@@ -315,7 +322,7 @@ bool Pipeline::make_faces_again() {
   complete_levels();
   size_faces();
   find_faces();
-  return !extraction_.mesh.faces.empty();
+  return !made_.extraction.mesh.faces.empty();
 }
 
 bool Pipeline::try_again(const std::function<bool()>& is_better,
@@ -336,46 +343,12 @@ bool Pipeline::try_again(const std::function<bool()>& is_better,
 }
 
 Pipeline::Attempt Pipeline::take_attempt() {
-  RemeshReport& report = result_.report;
-  return {std::exchange(extraction_, {}),
-          std::exchange(is_split_, false),
-          std::exchange(fields().position, {}),
-          std::exchange(report.position_energies, {}),
-          fields().orientation,
-          report.orientation_energies,
-          other_start_,
-          is_thorough_,
-          room_for_creases_,
-          divides_borders_,
-          borders_,
-          features_,
-          constraints_,
-          lattice_faces_,
-          target_,
-          lengths_,
-          keeps_singularities_,
-          report.notes};
+  return {plan_, std::exchange(made_, {})};
 }
 
 void Pipeline::put_back(Attempt&& attempt) {
-  extraction_ = std::move(attempt.extraction);
-  is_split_ = attempt.is_split;
-  fields().position = std::move(attempt.position);
-  result_.report.position_energies = std::move(attempt.position_energies);
-  fields().orientation = std::move(attempt.orientation);
-  result_.report.orientation_energies = std::move(attempt.orientation_energies);
-  other_start_ = attempt.other_start;
-  is_thorough_ = attempt.is_thorough;
-  room_for_creases_ = attempt.room_for_creases;
-  divides_borders_ = attempt.divides_borders;
-  borders_ = std::move(attempt.borders);
-  features_ = std::move(attempt.features);
-  constraints_ = std::move(attempt.constraints);
-  lattice_faces_ = attempt.lattice_faces;
-  target_ = attempt.target;
-  lengths_ = std::move(attempt.lengths);
-  keeps_singularities_ = std::move(attempt.keeps_singularities);
-  result_.report.notes = std::move(attempt.notes);
+  plan_ = std::move(attempt.plan);
+  made_ = std::move(attempt.made);
 }
 
 }  // namespace meshgrain

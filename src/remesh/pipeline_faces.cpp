@@ -52,7 +52,7 @@ std::vector<std::array<Index, 2>> border_of_faces(const Mesh& surface, const Gra
 
 void Pipeline::position_and_extract() {
   find_faces();
-  if (extraction_.mesh.faces.empty()) {
+  if (made_.extraction.mesh.faces.empty()) {
     throw Error(
         "nothing is left of the surface at this target: ask for more faces, or shorter edges");
   }
@@ -60,7 +60,7 @@ void Pipeline::position_and_extract() {
 
 void Pipeline::find_faces() {
   constexpr int attempts = 8;
-  const double tolerance = target_.tolerance();
+  const double tolerance = plan_.target.tolerance();
   const bool given = has_given_positions(options_);
   double least_error = std::numeric_limits<double>::infinity();
   bool has_room = true;       // beside borders that stay
@@ -73,9 +73,9 @@ void Pipeline::find_faces() {
                    : solve_positions();
     });
     // Another attempt is unlikely then.
-    if (!target_.must_be_met()) drop_coarse_levels();
+    if (!plan_.target.must_be_met()) drop_coarse_levels();
     Extraction found = stage_("extraction", [&] { return extract(positions); });
-    const double ratio = target_.count_ratio(found.mesh);
+    const double ratio = plan_.target.count_ratio(found.mesh);
     const double closing = attempt < 3 ? surplus() : std::max(surplus(), 0.03);
     const bool met = std::abs(ratio - 1) < tolerance ||
                      (ratio > 1 && ratio < 1 + closing && !given && take_faces_away(found)) ||
@@ -83,8 +83,8 @@ void Pipeline::find_faces() {
     const double error = met ? 0 : ratio < 1 ? 1 / ratio - 1 : (ratio - 1) / 5;
     if (error < least_error) {
       least_error = error;
-      extraction_ = std::move(found);
-      fields().position = std::move(positions);
+      made_.extraction = std::move(found);
+      made_.position = std::move(positions);
     }
     if (given || met) break;
     const bool is_near = ratio < 1 + closing && ratio > 1 - surplus();
@@ -93,19 +93,20 @@ void Pipeline::find_faces() {
     search.go_on(ratio, !is_changeable ? 1 : attempt < 3 ? count_to_aim_at() : 1.01);
     if (search.is_in_vain()) break;
     const double more = search.asked() - before;
-    if (!borders_.empty()) {
+    if (!plan_.borders.empty()) {
       has_room = fit_lengths_to_borders(std::exp(more));
       if (!has_room) break;
     } else {
-      lengths_ = graded(graph(), scaled(lengths_, std::exp(-more / 2)), growth(), context_);
+      plan_.lengths =
+          graded(graph(), scaled(plan_.lengths, std::exp(-more / 2)), growth(), context_);
     }
   }
-  if (!has_room || is_split_) return;
-  const double ratio = target_.count_ratio(extraction_.mesh);
-  const double most_to_change = given ? 1 + target_.surplus() : 2;
-  if (ratio > 1 + tolerance && ratio < most_to_change && !take_faces_away(extraction_)) {
+  if (!has_room || made_.is_split) return;
+  const double ratio = plan_.target.count_ratio(made_.extraction.mesh);
+  const double most_to_change = given ? 1 + plan_.target.surplus() : 2;
+  if (ratio > 1 + tolerance && ratio < most_to_change && !take_faces_away(made_.extraction)) {
     stage_("extraction",
-           [&] { take_strips(extraction_, extraction_.mesh.faces.corners().size()); });
+           [&] { take_strips(made_.extraction, made_.extraction.mesh.faces.corners().size()); });
   }
   if (ratio < 1 - tolerance && ratio > 1 / most_to_change) add_single_faces();
 }
@@ -113,9 +114,10 @@ void Pipeline::find_faces() {
 bool Pipeline::take_faces_away(Extraction& extraction) {
   return stage_("extraction", [&] {
     // Single quads beside strips, if these are fewer than the larger ones from before the split.
-    const std::size_t larger = target_.faces_to_close(extraction.mesh, strip_tolerance);
+    const std::size_t larger = plan_.target.faces_to_close(extraction.mesh, strip_tolerance);
     if (take_strips(extraction, larger)) return true;
-    const std::size_t wanted = target_.faces_to_close(extraction.mesh, target_.tolerance());
+    const std::size_t wanted =
+        plan_.target.faces_to_close(extraction.mesh, plan_.target.tolerance());
     return remove_single_faces(extraction, posy_of(options_.faces), wanted, context_) >= wanted;
   });
 }
@@ -133,12 +135,12 @@ bool Pipeline::add_faces(Extraction& extraction) {
 void Pipeline::add_single_faces() {
   if (posy_of(options_.faces) != 4) return;
   stage_("extraction", [&] {
-    const std::size_t missing = target_.missing_quads(extraction_.mesh);
-    if (lattice_faces_ == OutputFaces::quads) {
-      split(extraction_);
-      is_split_ = true;
+    const std::size_t missing = plan_.target.missing_quads(made_.extraction.mesh);
+    if (plan_.lattice_faces == OutputFaces::quads) {
+      split(made_.extraction);
+      made_.is_split = true;
     }
-    add_single_quads(extraction_, missing, context_);
+    add_single_quads(made_.extraction, missing, context_);
   });
 }
 
@@ -158,38 +160,39 @@ template <typename Change>
 bool Pipeline::change_quads(Extraction& extraction, const Change& change) {
   if (options_.faces != OutputFaces::quads) return false;
   Extraction quads = extraction;
-  if (lattice_faces_ == OutputFaces::quads) split(quads);
+  if (plan_.lattice_faces == OutputFaces::quads) split(quads);
   const auto count = static_cast<double>(quads.mesh.faces.size());
-  if (!change(quads, count, count / target_.count_ratio(extraction.mesh))) return false;
+  if (!change(quads, count, count / plan_.target.count_ratio(extraction.mesh))) return false;
   extraction = std::move(quads);
-  is_split_ = true;
+  made_.is_split = true;
   return true;
 }
 
 double Pipeline::surplus() const {
   const bool guided =
       std::ranges::any_of(options_.guides, [](const Guide& guide) { return guide.strength > 0; });
-  const bool harmless = lengths_.uniform() && !guided && borders_.empty() && regularity_ < 1;
-  return harmless ? target_.surplus() : target_.tolerance();
+  const bool harmless =
+      plan_.lengths.uniform() && !guided && plan_.borders.empty() && regularity_ < 1;
+  return harmless ? plan_.target.surplus() : plan_.target.tolerance();
 }
 
 double Pipeline::count_to_aim_at() const {
-  return 1 + (surplus() - target_.tolerance()) / 2;
+  return 1 + (surplus() - plan_.target.tolerance()) / 2;
 }
 
 PositionField Pipeline::solve_positions() {
   PositionOptions position;
   static_cast<SolverOptions&>(position) = options_.solver;
-  position.seed += other_start_;
+  position.seed += plan_.other_start;
   position.posy = posy_of(options_.faces);
   position.energy = options_.position_energy;
-  std::vector<PositionConstraint> constraints = constraints_.position;
-  const auto at_cuts = sample_cuts(cuts_, surface_, features_, lengths_);
+  std::vector<PositionConstraint> constraints = plan_.constraints.position;
+  const auto at_cuts = sample_cuts(cuts_, surface_, plan_.features, plan_.lengths);
   constraints.insert(constraints.end(), at_cuts.begin(), at_cuts.end());
-  const auto solver = PositionSolver::create(hierarchy_, fields().orientation, lengths_, position,
+  const auto solver = PositionSolver::create(hierarchy_, plan_.orientation, plan_.lengths, position,
                                              constraints, context_);
   while (solver->step(context_)) context_.progress("position field", solver->progress());
-  result_.report.position_energies = solver->energies();
+  made_.position_energies = solver->energies();
   PositionField field = solver->field();
   // Where these are farther apart than lattice points are, others than they may lie nearer to nodes
   // half way between them.
@@ -198,9 +201,9 @@ PositionField Pipeline::solve_positions() {
 }
 
 double Pipeline::cancelling_cost(double regularity) const {
-  const double middle = lattice_faces_ == OutputFaces::quads           ? 9.3
-                        : lattice_faces_ == OutputFaces::quad_dominant ? 14.3
-                                                                       : 11.2;
+  const double middle = plan_.lattice_faces == OutputFaces::quads           ? 9.3
+                        : plan_.lattice_faces == OutputFaces::quad_dominant ? 14.3
+                                                                            : 11.2;
   // Dearer ways crumple the grid, and mending it takes as many irregular vertices as they save.
   constexpr double least = 0.28, most = 4;  // of that
   const double growing = least + (1 - least) * regularity / std::max(1 - regularity, 1e-9);
@@ -220,29 +223,29 @@ Extraction Pipeline::extract(const PositionField& positions) {
     extract.border = border_edges(graph(), cloud_border_);
   } else if (nodes_are_vertices_) {
     extract.surface = &surface_;
-    extract.features = &features_;
+    extract.features = &plan_.features;
     extract.sources = cuts_.sources;
     extract.only_quads = has_quads_alone();
-    extract.keeps_singularities = keeps_singularities_;
+    extract.keeps_singularities = plan_.keeps_singularities;
     // See finish_borders(); and hexagons around a vertex of several pieces would be open.
-    extract.manifold = options_.manifold || !borders_.empty() ||
+    extract.manifold = options_.manifold || !plan_.borders.empty() ||
                        (options_.faces == OutputFaces::hexagons && !cuts_.empty());
   } else {
     extract.border = border_of_faces(surface_, graph());
   }
-  Extraction found = extract_mesh(graph(), fields().orientation, positions, extract, context_);
+  Extraction found = extract_mesh(graph(), plan_.orientation, positions, extract, context_);
   if (!nodes_are_vertices_) {
     for (Index& node : found.nodes) node = std::as_const(surface_.faces)[node][0];
   }
   if (options_.manifold) make_manifold(found);
-  if (!borders_.empty()) lock_borders(found, borders_, graph(), options_.faces, context_);
+  if (!plan_.borders.empty()) lock_borders(found, plan_.borders, graph(), options_.faces, context_);
   if (options_.faces == OutputFaces::hexagons) take_dual(found);
   return found;
 }
 
 void Pipeline::split(Extraction& extraction) const {
   split_into_quads(extraction);
-  if (!borders_.empty()) lock_middles(extraction, borders_, graph());
+  if (!plan_.borders.empty()) lock_middles(extraction, plan_.borders, graph());
 }
 
 SmoothOptions Pipeline::smooth_options() const {
@@ -256,64 +259,65 @@ SmoothOptions Pipeline::smooth_options() const {
   }
   if (options_.faces == OutputFaces::triangles) smoothing.evenness = 0.8;
   if (options_.faces == OutputFaces::quad_dominant) smoothing.evenness = 0.48;
-  const EdgeLength& lengths = result_.fields.position.edge_length;
+  const EdgeLength& lengths = made_.position.edge_length;
   if (!lengths.uniform() && nodes_are_vertices_) smoothing.relative_size = lengths;
   smoothing.fit = options_.sizing.adaptive;
-  smoothing.corners_stay = !borders_.empty();
+  smoothing.corners_stay = !plan_.borders.empty();
   // Quads at lines are mended by close_bad_quads() first.
   smoothing.creases_stay = posy_of(options_.faces) == 4;
-  if (!is_cloud_) smoothing.features = nodes_are_vertices_ ? &features_ : &border_lines_;
+  if (!is_cloud_) smoothing.features = nodes_are_vertices_ ? &plan_.features : &border_lines_;
   return smoothing;
 }
 
 bool Pipeline::smooth_faces_if(const std::function<bool()>& is_worth_mending) {
   return stage_("smoothing", [&] {
-    if (lattice_faces_ == OutputFaces::quads && !is_split_) {
-      split(extraction_);
-      is_split_ = true;
+    if (plan_.lattice_faces == OutputFaces::quads && !made_.is_split) {
+      split(made_.extraction);
+      made_.is_split = true;
     }
     finish_borders();
     SmoothOptions smoothing = smooth_options();
-    if (!smooth(extraction_, surface_, around_, finishing_graph(), smoothing, context_,
+    if (!smooth(made_.extraction, surface_, around_, finishing_graph(), smoothing, context_,
                 is_worth_mending)) {
       return false;
     }
     // What is bad beside vertices that cannot move shows only now.
-    if (!borders_.empty() && improve_border_faces(extraction_, options_.faces, context_)) {
-      smooth(extraction_, surface_, around_, finishing_graph(), smoothing, context_);
+    if (!plan_.borders.empty() &&
+        improve_border_faces(made_.extraction, options_.faces, context_)) {
+      smooth(made_.extraction, surface_, around_, finishing_graph(), smoothing, context_);
     }
     if (options_.smoothing > 0 && posy_of(options_.faces) == 4) {
-      close_bad_quads(extraction_, surface_, around_, finishing_graph(), std::move(smoothing),
-                      target_.spare_faces(extraction_.mesh), context_);
+      close_bad_quads(made_.extraction, surface_, around_, finishing_graph(), std::move(smoothing),
+                      plan_.target.spare_faces(made_.extraction.mesh), context_);
     }
     return true;
   });
 }
 
 void Pipeline::finish_borders() {
-  if (borders_.empty()) return;
+  if (plan_.borders.empty()) return;
   if (options_.faces == OutputFaces::quads) {
-    drop_spare_middles(extraction_);
-    improve_border_faces(extraction_, options_.faces, context_);
+    drop_spare_middles(made_.extraction);
+    improve_border_faces(made_.extraction, options_.faces, context_);
   }
   // The pieces of a surface that is not manifold were kept apart, so that each had its own borders.
-  if (!options_.manifold) join_locked(extraction_);
+  if (!options_.manifold) join_locked(made_.extraction);
 }
 
 void Pipeline::untwist_faces() {
   if (options_.smoothing == 0 || posy_of(options_.faces) != 4) return;
-  const bool border_stays = keeps_border_ || !borders_.empty();
+  const bool border_stays = keeps_border_ || !plan_.borders.empty();
   stage_("smoothing",
-         [&] { untwist(extraction_, finishing_graph().normals, border_stays, context_); });
+         [&] { untwist(made_.extraction, finishing_graph().normals, border_stays, context_); });
 }
 
 void Pipeline::untie_knots() {
-  if (options_.faces != OutputFaces::quads || !borders_.empty() || !shows_faults()) return;
+  if (options_.faces != OutputFaces::quads || !plan_.borders.empty() || !shows_faults()) return;
   // Shape is what regularity may cost.
   const auto most_worse = static_cast<float>(1 + regularity_ / 2);
   stage_("smoothing", [&] {
-    meshgrain::untie_knots(extraction_, surface_, around_, finishing_graph(), smooth_options(),
-                           target_.spare_faces(extraction_.mesh), most_worse, context_);
+    meshgrain::untie_knots(made_.extraction, surface_, around_, finishing_graph(), smooth_options(),
+                           plan_.target.spare_faces(made_.extraction.mesh), most_worse, context_);
   });
 }
 

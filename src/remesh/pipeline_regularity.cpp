@@ -25,12 +25,12 @@ void Pipeline::try_less_regular() {
   const bool may_try = options_.retries && !is_cloud_ && options_.smoothing > 0;
   if (!may_try || regularity_ <= moderate) return;
   const std::size_t before = faults();
-  if (before == 0 || before > extraction_.mesh.faces.size() / Flaws::hopeless) return;
+  if (before == 0 || before > made_.extraction.mesh.faces.size() / Flaws::hopeless) return;
   for (const double share : {0.5, 0.0}) {
     regularity_ = moderate + share * (options_.regularity - moderate);
     // Where the input passes through itself there are always some.
     if (!try_again([&] { return 2 * faults() < before; })) continue;
-    result_.report.notes.emplace_back(
+    plan_.notes.emplace_back(
         "less regular than was asked for: faces would be inverted or pass through each other");
     break;
   }
@@ -42,28 +42,28 @@ bool Pipeline::is_needlessly_irregular() const {
   // far apart cancel out there at no cost of shape, other than what their ways cost suggests.
   constexpr double needless = 1.5;
   constexpr std::size_t few = 8;
-  const VertexDegrees degrees = vertex_degrees(extraction_.mesh, edges_of(extraction_.mesh));
+  const VertexDegrees degrees =
+      vertex_degrees(made_.extraction.mesh, edges_of(made_.extraction.mesh));
   std::size_t irregular = 0;
   for (std::size_t v = 0; v < degrees.neighbours.size(); ++v) irregular += degrees.irregular(v);
   if (irregular <= few) return false;
   const std::size_t least =
-      orientation_singularities(surface_, graph().normals, result_.fields.orientation, context_)
-          .size();
+      orientation_singularities(surface_, graph().normals, plan_.orientation, context_).size();
   return static_cast<double>(irregular - few) > needless * static_cast<double>(least);
 }
 
 void Pipeline::try_more_regular() {
   const bool may_try = options_.faces == OutputFaces::quads && may_make_others() &&
                        may_be_irregular() && !is_cloud_ && nodes_are_vertices_ &&
-                       options_.sizing.is_uniform() && borders_.empty() &&
+                       options_.sizing.is_uniform() && plan_.borders.empty() &&
                        options_.fields == nullptr;
   if (!may_try || !is_needlessly_irregular()) return;
   const Flaws flaws_before = flaws(lost_surface().faces);
   // What has flaws is seldom better with fewer rows that end, and takes long to mend.
   if (flaws_before.any()) return;
-  const MeshStatistics before = mesh_statistics(extraction_.mesh);
+  const MeshStatistics before = mesh_statistics(made_.extraction.mesh);
   Attempt as_asked = take_attempt();
-  is_thorough_ = true;
+  plan_.is_thorough = true;
   complete_levels();
   orient();
   bool is_better = false;
@@ -87,14 +87,14 @@ bool Pipeline::make_more_regular(const MeshStatistics& before, const Flaws& flaw
   // become more even, but areas hardly do.
   const auto are_promising = [&] {
     constexpr double hardly = 1.05;
-    return mesh_statistics(extraction_.mesh).area_sigma <= hardly * before.area_sigma;
+    return mesh_statistics(made_.extraction.mesh).area_sigma <= hardly * before.area_sigma;
   };
-  if (!make_faces_again() || !are_fewer(mesh_statistics(extraction_.mesh), 1)) return false;
+  if (!make_faces_again() || !are_fewer(mesh_statistics(made_.extraction.mesh), 1)) return false;
   if (!smooth_faces_if(are_promising)) return false;
   untwist_faces();
   untie_knots();
   constexpr double clearly = 0.9;
-  const MeshStatistics now = mesh_statistics(extraction_.mesh);
+  const MeshStatistics now = mesh_statistics(made_.extraction.mesh);
   return are_fewer(now, clearly) && are_no_worse(now, before) &&
          flaws(lost_surface().faces).are_no_more_than(flaws_before);
 }

@@ -43,7 +43,7 @@ void Pipeline::clean_up(Mesh input) {
     is_in_order_ = true;
   }
   stage_("clean", [&] {
-    result_.report.notes = clean_input(input, context_);
+    plan_.notes = clean_input(input, context_);
     clean_vertices_ = input.positions.size();
     frame_ = unit_frame(input, context_);
     aim_at(options_.faces);
@@ -75,7 +75,7 @@ void Pipeline::clean_border() {
 
 bool Pipeline::are_cracks(std::span<const std::array<Index, 2>> border) const {
   constexpr double sides = 3;  // there and back again
-  const double side = target_.face_side(surface_area(surface_, context_));
+  const double side = plan_.target.face_side(surface_area(surface_, context_));
   return has_short_loops(surface_, border, sides * side);
 }
 
@@ -89,15 +89,16 @@ Mesh Pipeline::seamed_surface() const {
 }
 
 void Pipeline::add_notes(const std::vector<std::string>& notes) {
-  result_.report.notes.insert(result_.report.notes.end(), notes.begin(), notes.end());
+  plan_.notes.insert(plan_.notes.end(), notes.begin(), notes.end());
 }
 
 void Pipeline::drop_pieces() {
   if (is_cloud_ || options_.min_component == 0) return;
-  const double area = options_.min_component * target_.face_area(surface_area(surface_, context_));
+  const double area =
+      options_.min_component * plan_.target.face_area(surface_area(surface_, context_));
   if (const std::size_t dropped = drop_small_pieces(surface_, area)) {
     const double least = options_.min_component;
-    result_.report.notes.push_back(
+    plan_.notes.push_back(
         fmt::format("left out {} {} ", dropped, dropped == 1 ? "piece" : "pieces") +
         (least == 1 ? "smaller than a face"
                     : fmt::format("with room for fewer than {:g} faces", least)));
@@ -108,8 +109,8 @@ void Pipeline::sharpen() {
   if (is_cloud_) return;
   stage_("sharpen", [&] {
     input_size_ = surface_size(surface_, context_);
-    const double side = target_.face_side(input_size_.area);
-    is_sharpened_ = sharpen_part(surface_, options_, side, result_.report.notes, context_);
+    const double side = plan_.target.face_side(input_size_.area);
+    is_sharpened_ = sharpen_part(surface_, options_, side, plan_.notes, context_);
     if (is_sharpened_) input_size_ = surface_size(surface_, context_);
   });
   if (options_.lock_borders) locked_ = rim_vertices(surface_, context_);
@@ -117,12 +118,12 @@ void Pipeline::sharpen() {
 
 void Pipeline::coarsen() {
   if (is_cloud_) return thin_out_cloud();
-  if (!target_.is_dense(options_, surface_.positions.size(), input_size_)) return;
+  if (!plan_.target.is_dense(options_, surface_.positions.size(), input_size_)) return;
   if (!is_in_order_) stage_("order", [&] { put_in_order(); });
   // What is a crease is to be seen where the surface is as it was.
   stage_("features", [&] {
     had_marks_ = !surface_.marked_edges.empty();
-    const double side = target_.face_side(input_size_.area);
+    const double side = plan_.target.face_side(input_size_.area);
     const auto creases = find_creases(surface_, feature_options(), side, context_);
     surface_.marked_edges.insert(surface_.marked_edges.end(), creases.begin(), creases.end());
   });
@@ -130,19 +131,19 @@ void Pipeline::coarsen() {
   stage_("coarsen", [&] {
     std::vector<std::uint8_t> stays(surface_.positions.size(), 0);
     for (const auto& [a, b] : surface_.marked_edges) stays[a] = stays[b] = 1;
-    const CoarseEdges edges = target_.coarse_edges(options_, input_size_.area);
+    const CoarseEdges edges = plan_.target.coarse_edges(options_, input_size_.area);
     is_in_order_ = false;
     const auto kept = meshgrain::coarsen(surface_, edges, std::move(stays), context_);
     if (!locked_.empty()) locked_ = picked(locked_, kept);
     input_size_ = surface_size(surface_, context_);
-    check_memory_of_coarse(surface_, input_size_.area, options_, target_, context_);
+    check_memory_of_coarse(surface_, input_size_.area, options_, plan_.target, context_);
   });
 }
 
 void Pipeline::thin_out_cloud() {
-  if (!target_.may_be_dense(options_, surface_.positions.size())) return;
+  if (!plan_.target.may_be_dense(options_, surface_.positions.size())) return;
   if (!is_in_order_) stage_("order", [&] { put_in_order(); });
-  stage_("coarsen", [&] { thin_out(surface_, target_.density_of_cloud(options_), context_); });
+  stage_("coarsen", [&] { thin_out(surface_, plan_.target.density_of_cloud(options_), context_); });
 }
 
 FeatureOptions Pipeline::feature_options() const {
@@ -162,16 +163,16 @@ void Pipeline::refine() {
   if (!is_cloud_) {
     const double area = input_size_.area;
     if (!(area > 0)) throw Error("the input has no surface: all of its faces are degenerate");
-    target_.refuse_too_many(area);
+    plan_.target.refuse_too_many(area);
     stage_("subdivide", [&] { split_long_edges(area, input_size_.edges); });
-    lay_guides(target_.edge_length(area));
+    lay_guides(plan_.target.edge_length(area));
   }
   if (!is_in_order_) stage_("order", [&] { put_in_order(); });
 }
 
 bool Pipeline::split_long_edges(double area, const EdgeLengths& edges) {
-  const double limit = is_coarsened_ ? target_.coarse_edges(options_, area).longest
-                                     : target_.longest_input_edge(options_, area, edges.mean);
+  const double limit = is_coarsened_ ? plan_.target.coarse_edges(options_, area).longest
+                                     : plan_.target.longest_input_edge(options_, area, edges.mean);
   if (!(edges.max > limit)) return false;
   std::vector<Index> faces = faces_with_long_edges(surface_, limit, context_);
   if (refine_slivers(surface_, limit, faces, context_)) {
@@ -202,7 +203,7 @@ void Pipeline::lay_guides(double edge_length) {
     std::vector<EdgeOfLine> lines;
     const bool cut = !is_cloud_ && nodes_are_vertices_;
     if (cut) {
-      const double side = target_.face_side(surface_area(surface_, context_));
+      const double side = plan_.target.face_side(surface_area(surface_, context_));
       lines = feature_edges(surface_, feature_options(), side, context_);
     }
     TracedGuides traced = trace_guides(surface_, guides, lines, edge_length, frame_.scale);
