@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "measure/face_shape.h"
 #include "mesh/edges.h"
 #include "meshgrain/singularities.h"
 #include "meshgrain/statistics.h"
@@ -10,12 +11,14 @@
 namespace meshgrain {
 namespace {
 
-/// Of the shapes of faces: neither areas nor angles are clearly less even, nor both together.
+/// Of the shapes of faces: neither areas nor angles are clearly less even, nor both together. Where
+/// most irregular vertices go, that is worth a little.
 bool are_no_worse(const MeshStatistics& now, const MeshStatistics& before) {
-  constexpr double clearly = 1.03;
-  return now.area_sigma <= clearly * before.area_sigma &&
-         now.angle_sigma <= clearly * before.angle_sigma &&
-         now.area_sigma * now.angle_sigma <= before.area_sigma * before.angle_sigma;
+  const bool most_go = 2 * now.singularities <= before.singularities;
+  const double each = most_go ? 1.2 : 1.03, both = most_go ? 1.3 : 1;
+  return now.area_sigma <= each * before.area_sigma &&
+         now.angle_sigma <= each * before.angle_sigma &&
+         now.area_sigma * now.angle_sigma <= both * before.area_sigma * before.angle_sigma;
 }
 
 }  // namespace
@@ -40,8 +43,10 @@ void Pipeline::try_less_regular() {
 bool Pipeline::is_needlessly_irregular() const {
   // Over parts with large flat sides rows end that need not: singularities of positions that lie
   // far apart cancel out there at no cost of shape, other than what their ways cost suggests.
-  constexpr double needless = 1.5;
-  constexpr std::size_t few = 8;
+  // Among few faces each of them shows, and to try costs little.
+  const bool shows_each = made_.extraction.mesh.faces.size() < few_faces;
+  const double needless = shows_each ? 1 : 1.5;
+  const std::size_t few = shows_each ? 1 : 8;
   const VertexDegrees degrees =
       vertex_degrees(made_.extraction.mesh, edges_of(made_.extraction.mesh));
   std::size_t irregular = 0;
@@ -66,15 +71,16 @@ void Pipeline::try_more_regular() {
   plan_.is_thorough = true;
   complete_levels();
   orient();
-  bool is_better = false;
-  for (const double regularity : {1.0, 0.75}) {
+  const Plan thorough = plan_;
+  const auto is_better = [&](const Plan& plan, double regularity) {
+    plan_ = plan;
+    made_ = {};
     regularity_ = regularity;
-    Attempt oriented = take_attempt();
-    is_better = make_more_regular(before, flaws_before);
-    if (is_better) break;
-    put_back(std::move(oriented));
+    return make_more_regular(before, flaws_before);
+  };
+  if (!is_better(thorough, 1) && !is_better(thorough, 0.75) && !is_better(as_asked.plan, 1)) {
+    put_back(std::move(as_asked));
   }
-  if (!is_better) put_back(std::move(as_asked));
   regularity_ = options_.regularity;
 }
 
@@ -86,7 +92,7 @@ bool Pipeline::make_more_regular(const MeshStatistics& before, const Flaws& flaw
   // What will not do shows early: some more irregular vertices are mended away later on, and angles
   // become more even, but areas hardly do.
   const auto are_promising = [&] {
-    constexpr double hardly = 1.05;
+    constexpr double hardly = 1.2;
     return mesh_statistics(made_.extraction.mesh).area_sigma <= hardly * before.area_sigma;
   };
   if (!make_faces_again() || !are_fewer(mesh_statistics(made_.extraction.mesh), 1)) return false;
