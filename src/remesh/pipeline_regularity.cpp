@@ -12,10 +12,10 @@ namespace meshgrain {
 namespace {
 
 /// Of the shapes of faces: neither areas nor angles are clearly less even, nor both together. Where
-/// most irregular vertices go, that is worth a little.
-bool are_no_worse(const MeshStatistics& now, const MeshStatistics& before) {
-  const bool most_go = 2 * now.singularities <= before.singularities;
-  const double each = most_go ? 1.2 : 1.03, both = most_go ? 1.3 : 1;
+/// most irregular vertices go, that may be worth a little.
+bool are_no_worse(const MeshStatistics& now, const MeshStatistics& before, bool is_worth_shape) {
+  const bool may_cost = is_worth_shape && 2 * now.singularities <= before.singularities;
+  const double each = may_cost ? 1.2 : 1.03, both = may_cost ? 1.3 : 1;
   return now.area_sigma <= each * before.area_sigma &&
          now.angle_sigma <= each * before.angle_sigma &&
          now.area_sigma * now.angle_sigma <= both * before.area_sigma * before.angle_sigma;
@@ -101,7 +101,9 @@ bool Pipeline::make_more_regular(const MeshStatistics& before, const Flaws& flaw
   untie_knots();
   constexpr double clearly = 0.9;
   const MeshStatistics now = mesh_statistics(made_.extraction.mesh);
-  return are_fewer(now, clearly) && are_no_worse(now, before) &&
+  // Who asks for less regularity than by default wants it at no cost of shape.
+  const bool is_worth_shape = options_.regularity >= RemeshOptions().regularity;
+  return are_fewer(now, clearly) && are_no_worse(now, before, is_worth_shape) &&
          flaws(lost_surface().faces).are_no_more_than(flaws_before);
 }
 
