@@ -166,7 +166,9 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("-f,--faces", o.face_count, "so many faces, in the mesh that is written")
       ->check(refuse_unless_count)
       ->type_name("N")
-      ->group("How fine (one of these; by default about a sixteenth of the input's vertices)");
+      ->group(
+          "How fine (one of these; by default about a sixteenth of the input's vertices, but 500 "
+          "at least)");
   app.add_option("-v,--vertices", o.vertex_count, "so many vertices, in the mesh that is written")
       ->check(refuse_unless_count)
       ->type_name("N")

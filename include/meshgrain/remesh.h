@@ -30,7 +30,8 @@ struct RemeshOptions {
   int rosy = 0;  ///< 1, 2, 4 or 6; 0: 6 for triangles and hexagons, else 4.
 
   /// How fine the written mesh is to be: the first of these that is not zero. Counts are met within
-  /// one percent. If all are zero, the mesh has about a sixteenth of the input's vertices.
+  /// one percent. If all are zero, the mesh has about a sixteenth of the input's vertices, but 500
+  /// at least.
   double edge_length = 0;  ///< In input units.
   std::size_t face_count = 0;
   std::size_t vertex_count = 0;

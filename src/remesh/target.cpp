@@ -16,6 +16,11 @@ int posy_of(OutputFaces faces) {
   return faces == OutputFaces::triangles || faces == OutputFaces::hexagons ? 6 : 4;
 }
 
+std::size_t default_vertex_count(std::size_t input_vertices) {
+  constexpr std::size_t least = 500;
+  return std::max(input_vertices / 16, least);
+}
+
 Target::Target(const RemeshOptions& options, OutputFaces lattice_faces, std::size_t input_vertices,
                double scale) {
   // A cell of the triangular lattice is two triangles, or one vertex; of its dual, two vertices or
@@ -40,9 +45,8 @@ Target::Target(const RemeshOptions& options, OutputFaces lattice_faces, std::siz
     length_ = sum / static_cast<double>(lengths.size()) / scale;
   } else {
     is_asked_for_ = options.vertex_count > 0;
-    const auto input = static_cast<double>(input_vertices);
-    vertices_ = options.vertex_count > 0 ? static_cast<double>(options.vertex_count)
-                                         : std::max(1.0, input / 16);
+    vertices_ = static_cast<double>(is_asked_for_ ? options.vertex_count
+                                                  : default_vertex_count(input_vertices));
     cells_ = vertices_ / vertices_per_cell;
   }
 }

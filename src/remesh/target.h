@@ -10,6 +10,10 @@ namespace meshgrain {
 /// The symmetry of the position field that an output needs.
 int posy_of(OutputFaces faces);
 
+/// How many vertices the mesh is to have where nothing is asked for: a sixteenth of the input's, as
+/// suits scans; but of an input of few vertices, such as a part from CAD, enough for its shape.
+std::size_t default_vertex_count(std::size_t input_vertices);
+
 /// Whether the input's edges cannot be split again once the sizes of faces are known: the nodes are
 /// its faces, or guides are cut into it.
 bool splits_only_once(const RemeshOptions& options);
