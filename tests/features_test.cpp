@@ -405,6 +405,78 @@ TEST(Features, FacetsOfATwistedColumnAreNoCreasesOfCoarseFaces) {
   EXPECT_GT(followed.mesh.faces.size(), 2 * options.face_count);
 }
 
+/// Which faces of a mesh over a flat square look down.
+std::size_t turned_over(const Mesh& flat) {
+  std::size_t count = 0;
+  for (std::size_t f = 0; f < flat.faces.size(); ++f) {
+    const auto face = flat.faces[f];
+    count += (flat.positions[face[2]] - flat.positions[face[0]])
+                 .cross(flat.positions[face.back()] - flat.positions[face[1]])
+                 .z() < 0;
+  }
+  return count;
+}
+
+/// Faces with corners on both sides of a circle, farther from it than that.
+std::size_t faces_across(const Mesh& flat, float radius, float most) {
+  std::size_t count = 0;
+  for (std::size_t f = 0; f < flat.faces.size(); ++f) {
+    float least = radius, greatest = radius;
+    for (const Index v : flat.faces[f]) {
+      const Eigen::Vector3d p = flat.origin + flat.positions[v].cast<double>();
+      const auto distance = static_cast<float>(p.head<2>().norm());
+      least = std::min(least, distance);
+      greatest = std::max(greatest, distance);
+    }
+    count += least < radius - most && greatest > radius + most;
+  }
+  return count;
+}
+
+/// Where two materials meet along the sides of squares, in steps about as long as a face.
+TEST(Features, RaggedMarksAreFollowedEvenly) {
+  int without_some = 0;
+  for (const Index side : {20u, 40u}) {
+    const float half = static_cast<float>(side) / 2, radius = 0.66f * half;
+    Mesh square;
+    const auto at = [&](Index x, Index y) { return y * (side + 1) + x; };
+    const auto is_inside = [&](Index x, Index y) {
+      return std::hypot(static_cast<float>(x) + 0.5f - half, static_cast<float>(y) + 0.5f - half) <
+             radius;
+    };
+    for (Index y = 0; y <= side; ++y) {
+      for (Index x = 0; x <= side; ++x) {
+        square.positions.push_back({static_cast<float>(x) - half, static_cast<float>(y) - half, 0});
+        if (x == side || y == side) continue;
+        square.faces.push_back({at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)});
+        if (x == 0 || y == 0) continue;
+        if (is_inside(x, y) != is_inside(x - 1, y)) {
+          square.marked_edges.push_back({at(x, y), at(x, y + 1)});
+        }
+        if (is_inside(x, y) != is_inside(x, y - 1)) {
+          square.marked_edges.push_back({at(x, y), at(x + 1, y)});
+        }
+      }
+    }
+    for (const std::size_t faces : {200u, 300u, 500u, 800u}) {
+      SCOPED_TRACE(std::to_string(side) + " squares, " + std::to_string(faces) + " faces");
+      RemeshOptions options;
+      options.face_count = faces;
+      const RemeshResult result = remesh(square, options);
+      expect_sound(result.mesh, square, faces);
+      EXPECT_EQ(turned_over(result.mesh), 0u);
+      EXPECT_FALSE(made::has_note(result, "without creases"));
+      if (made::has_note(result, "without some")) {
+        ++without_some;
+        continue;
+      }
+      EXPECT_LT(mesh_statistics(result.mesh).angle_sigma, 18);
+      EXPECT_LE(faces_across(result.mesh, radius, 0.7f), faces / 50);
+    }
+  }
+  EXPECT_LE(without_some, 1);
+}
+
 /// The borders of materials, such as the lanes of a running track, much narrower than faces.
 TEST(Features, MarksYieldToSoundFaces) {
   constexpr Index side = 80;

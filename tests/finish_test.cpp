@@ -15,6 +15,7 @@
 #include "finish/fit_to_surface.h"
 #include "finish/go_around.h"
 #include "finish/placement.h"
+#include "finish/turned_over.h"
 #include "finish/unfold.h"
 #include "finish/untwist.h"
 #include "measure/crossings.h"
@@ -459,6 +460,33 @@ TEST(Finish, TangledVerticesComeUntwisted) {
     untwist(grid, normals, true, Context());
     EXPECT_EQ(mesh_statistics(grid.mesh).inverted_quads, 0u) << time;
   }
+}
+
+/// A pleat: no corner of its faces is turned in, but those in the middle lie on their backs.
+TEST(Finish, FacesTurnedOverAsAWholeComeUntwisted) {
+  constexpr Index n = 9;
+  Extraction grid = integer_grid(n, n);
+  const std::vector<Vec3> normals(n * n, Vec3::UnitZ());
+  for (Index y = 0; y < n; ++y) {
+    constexpr float pleated[] = {0, 1.6f, 3.2f, 4.8f, 4.0f, 3.2f, 4.8f, 6.4f, 8};
+    for (Index x = 0; x < n; ++x) grid.mesh.positions[y * n + x].x() = pleated[x];
+  }
+  const auto turned_over = [&] {
+    const VertexFaces around = vertex_faces(grid.mesh);
+    std::size_t count = 0;
+    for (Index f = 0; f < grid.mesh.faces.size(); ++f) {
+      count += is_turned_over(grid, f, around, normals);
+    }
+    return count;
+  };
+  ASSERT_EQ(mesh_statistics(grid.mesh).inverted_quads, 0u);
+  ASSERT_GT(turned_over(), 0u);
+  for (Index y = 0; y < n; y += n - 1) {  // the border is as it should be
+    for (Index x = 0; x < n; ++x) grid.mesh.positions[y * n + x].x() = static_cast<float>(x);
+  }
+  untwist(grid, normals, true, Context());
+  EXPECT_EQ(turned_over(), 0u);
+  EXPECT_EQ(mesh_statistics(grid.mesh).inverted_quads, 0u);
 }
 
 /// Of a grid over a plane some vertices lie where they turn quads in; those of the border, or at a

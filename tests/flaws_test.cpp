@@ -45,12 +45,12 @@ TEST(Notes, TellOfFaultsThatAreLeft) {
   };
   EXPECT_TRUE(notes({}).empty());
   EXPECT_EQ(notes({1, 0}).at(0),
-            "could not avoid 1 inverted quad: more and smaller faces may help");
+            "could not avoid 1 inverted face: more and smaller faces may help");
   EXPECT_EQ(notes({0, 1}).at(0),
             "could not avoid a pair of faces that pass through each other: more and smaller faces "
             "may help");
   EXPECT_EQ(notes({2, 30}).at(0),
-            "could not avoid 2 inverted quads, and 30 pairs of faces that pass through each other: "
+            "could not avoid 2 inverted faces, and 30 pairs of faces that pass through each other: "
             "more and smaller faces may help");
 }
 

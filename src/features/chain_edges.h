@@ -9,6 +9,11 @@ namespace meshgrain {
 
 enum class LineKind : std::uint8_t { border, crease, marked, guide };
 
+/// Whether a line turns sharply: by more than an angle, 40 degrees if its cosine is not given.
+inline bool is_sharp_turn(const Vec3& in, const Vec3& out, float cosine = 0.766f) {
+  return in.dot(out) < cosine * in.norm() * out.norm();
+}
+
 struct EdgeOfLine {
   std::array<Index, 2> ends;
   LineKind kind;

@@ -7,6 +7,7 @@
 #include "features/leave_out_creases.h"
 #include "features/leave_out_fragments.h"
 #include "features/mechanical_creases.h"
+#include "features/ragged_lines.h"
 #include "mesh/border.h"
 #include "mesh/marks.h"
 #include "util/sort_unique.h"
@@ -147,6 +148,7 @@ FeatureLines find_features(const Mesh& mesh, const FeatureOptions& options,
     for (const Index v : edge.ends) on_guide[v] = 1;
   }
   FeatureLines lines = chain_edges(mesh, edges, options, edge_length);
+  even_out_ragged_marks(lines, mesh, edges, edge_length, context);
   for (const Index v : lines.corners) on_guide[v] = 0;
   for (std::size_t k = 0; k < lines.vertices.size(); ++k) {
     const Index v = lines.vertices[k];

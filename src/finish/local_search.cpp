@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "field/rosy.h"
+#include "finish/turned_over.h"
 #include "measure/crossings.h"
 #include "measure/face_shape.h"
 #include "util/sort_unique.h"
@@ -151,14 +152,8 @@ float LocalSearch::quality_here(Index f) const {
 
 float LocalSearch::quality_among_neighbors(Index f) const {
   const auto face = std::as_const(mesh_.faces)[f];
-  Vec3 upward = Vec3::Zero();
-  for (const Index v : face) {
-    for (const Index g : around_[v]) {
-      upward += area_vector(std::as_const(mesh_.faces)[g], mesh_.positions);
-    }
-  }
   return face_quality(face, mesh_.positions, area_vector(face, mesh_.positions),
-                      upward.normalized());
+                      area_around(mesh_, f, around_).normalized());
 }
 
 float LocalSearch::shape_lack(Index v, std::span<const Upward> upward, float limit) const {

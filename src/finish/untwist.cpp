@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "finish/turned_over.h"
 #include "measure/crossings.h"
 #include "measure/face_shape.h"
 #include "mesh/border.h"
@@ -26,13 +27,13 @@ class Untwisting {
         context_(context) {}
 
   void run() {
+    around_ = vertex_faces(mesh_, context_);
     std::vector<Index> twisted = twisted_quads();
     const std::size_t faces = mesh_.faces.size();
     constexpr std::size_t hopeless = 5;  // one in so many
     if (twisted.empty() || twisted.size() > faces / hopeless) return;
     const std::size_t crossings = find_crossings(mesh_, context_).size();
     if (crossings > hopeless_crossings * faces) return;
-    around_ = vertex_faces(mesh_, context_);
     start_ = mesh_.positions;
     hold();
     const double effort = is_crumpled(crossings, faces) ? effort_if_crumpled : 1;
@@ -82,7 +83,9 @@ class Untwisting {
 
   bool is_twisted(Index f) const {
     constexpr float rounding = 1e-3f;  // of what is written
-    return mesh_.faces.degree(f) == 4 && scaled_jacobian(face(f), mesh_.positions) <= rounding;
+    if (mesh_.faces.degree(f) == 4 && scaled_jacobian(face(f), mesh_.positions) <= rounding)
+      return true;
+    return is_turned_over(extraction_, f, around_, node_normals_);
   }
 
   std::vector<Index> twisted_quads() const {
@@ -98,12 +101,8 @@ class Untwisting {
     for (const Index v : face(f)) of_surface += node_normals_[extraction_.nodes[v]];
     const float by_surface = face_quality(face(f), mesh_.positions, area, of_surface.normalized());
     if (by_surface >= enough) return by_surface;
-    Vec3 of_neighbors = Vec3::Zero();
-    for (const Index v : face(f)) {
-      for (const Index g : around_[v]) of_neighbors += area_vector(face(g), mesh_.positions);
-    }
-    return std::max(by_surface,
-                    face_quality(face(f), mesh_.positions, area, of_neighbors.normalized()));
+    const Vec3 of_neighbors = area_around(mesh_, f, around_).normalized();
+    return std::max(by_surface, face_quality(face(f), mesh_.positions, area, of_neighbors));
   }
 
   /// Of the faces around a vertex; from `limit` on it need not be exact.

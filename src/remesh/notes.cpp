@@ -68,7 +68,7 @@ void note_faults(RemeshResult& result, const FaultCounts& faults) {
   std::vector<std::string> left;
   if (faults.inverted > 0) {
     left.push_back(
-        fmt::format("{} inverted {}", faults.inverted, faults.inverted == 1 ? "quad" : "quads"));
+        fmt::format("{} inverted {}", faults.inverted, faults.inverted == 1 ? "face" : "faces"));
   }
   if (faults.crossings > 0) {
     left.push_back(

@@ -164,7 +164,8 @@ class Pipeline {
   bool are_cracks(std::span<const std::array<Index, 2>> border) const;
   void drop_pieces();
 
-  std::size_t inverted_faces() const;
+  /// Quads with a corner of 180 degrees or more, and faces that look away from the surface.
+  std::vector<Index> inverted_faces() const;
   /// Inverted faces, and pairs that pass through each other.
   std::size_t faults() const;
   /// What faces are made from, as far as other faces may be made from something else.

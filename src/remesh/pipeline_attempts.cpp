@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "finish/bare_ends.h"
+#include "finish/turned_over.h"
 #include "graph/spread.h"
 #include "measure/crossings.h"
 #include "measure/face_shape.h"
@@ -19,12 +21,29 @@
 
 namespace meshgrain {
 
-std::size_t Pipeline::inverted_faces() const {
-  return mesh_statistics(made_.extraction.mesh).inverted_quads;
+std::vector<Index> Pipeline::inverted_faces() const {
+  const Mesh& mesh = made_.extraction.mesh;
+  const auto& normals = finishing_graph().normals;
+  std::vector<Index> inverted, away;
+  for (Index f = 0; f < mesh.faces.size(); ++f) {
+    const auto face = mesh.faces[f];
+    if (face.size() == 4 && scaled_jacobian(face, mesh.positions) <= 0) {
+      inverted.push_back(f);
+    } else if (!is_cloud_ && looks_away(made_.extraction, f, normals)) {
+      away.push_back(f);
+    }
+  }
+  if (away.empty()) return inverted;
+  const VertexFaces around = vertex_faces(mesh, context_);
+  std::ranges::copy_if(away, std::back_inserter(inverted), [&](Index f) {
+    return is_turned_over(made_.extraction, f, around, normals);
+  });
+  std::ranges::sort(inverted);
+  return inverted;
 }
 
 std::size_t Pipeline::faults() const {
-  return inverted_faces() + find_crossings(made_.extraction.mesh, context_).size();
+  return inverted_faces().size() + find_crossings(made_.extraction.mesh, context_).size();
 }
 
 LostSurface Pipeline::lost_surface() const {
@@ -51,7 +70,7 @@ bool Pipeline::may_be_irregular() const {
 Flaws Pipeline::flaws(double lost_faces) {
   constexpr float nearly_flat = 0.1f;  // beyond it a quad is as good as any
   const float flatness = std::max(0.0f, nearly_flat - least_jacobian(made_.extraction.mesh));
-  const std::size_t inverted = flatness > 0 ? inverted_faces() : 0;
+  const std::size_t inverted = inverted_faces().size();
   auto crossings = find_crossings(made_.extraction.mesh, context_);
   const std::size_t all = crossings.size();
   const FaultCounts faults{inverted, own(std::move(crossings)).size()};
@@ -77,8 +96,8 @@ Faults Pipeline::find_faults() {
   Faults faults;
   // Of many faces, to look for crossings as well takes too long.
   constexpr std::size_t few = 100000;
-  const bool has_any = may_have_faults_ && (made_.extraction.mesh.faces.size() < few ||
-                                            least_jacobian(made_.extraction.mesh) <= 0);
+  const bool has_any =
+      may_have_faults_ && (made_.extraction.mesh.faces.size() < few || !inverted_faces().empty());
   if (!has_any) return faults;
   const Faces& faces = made_.extraction.mesh.faces;
   const auto add = [&](Index f) {
@@ -87,12 +106,9 @@ Faults Pipeline::find_faults() {
       faults.nodes.push_back(cuts_.empty() ? node : cuts_.sources[node]);
     }
   };
-  for (Index f = 0; f < faces.size(); ++f) {
-    if (faces.degree(f) != 4 || scaled_jacobian(faces[f], made_.extraction.mesh.positions) > 0)
-      continue;
-    ++faults.inverted;
-    add(f);
-  }
+  const std::vector<Index> inverted = inverted_faces();
+  faults.inverted = inverted.size();
+  std::ranges::for_each(inverted, add);
   sort_unique(faults.nodes);
   faults.nodes_of_inverted = faults.nodes;
   for (const auto& [f, g] : own(find_crossings(made_.extraction.mesh, context_))) {
@@ -107,7 +123,7 @@ Faults Pipeline::find_faults() {
 void Pipeline::smooth_faces() {
   const auto are_crumpled = [&] {
     constexpr std::size_t few = 8;  // 40 meshes with more of them all had too many in the end
-    return inverted_faces() > made_.extraction.mesh.faces.size() / few;
+    return inverted_faces().size() > made_.extraction.mesh.faces.size() / few;
   };
   has_tried_without_creases_ = false;
   const bool creases_may_yield =
@@ -307,7 +323,7 @@ void Pipeline::try_coarser_lattice() {
   if (!options_.retries || plan_.lattice_faces == options_.faces || has_given_positions(options_))
     return;
   constexpr double hopeless = 0.2;
-  if (inverted_faces() == 0 || share_of_holes() > hopeless) return;
+  if (inverted_faces().empty() || share_of_holes() > hopeless) return;
   const Flaws before = flaws(0);
   if (!may_be_of_use(before.faults) || before.are_inherent(made_.extraction.mesh.faces.size()))
     return;
