@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "features/cone_tips.h"
 #include "features/fading_creases.h"
 #include "features/mechanical_creases.h"
 #include "has_note.h"
@@ -403,6 +404,61 @@ TEST(Features, FacetsOfATwistedColumnAreNoCreasesOfCoarseFaces) {
   const RemeshResult followed = remesh(column, options);
   made::expect_same_topology(mesh_statistics(followed.mesh), mesh_statistics(column));
   EXPECT_GT(followed.mesh.faces.size(), 2 * options.face_count);
+}
+
+/// A cone of height 2 over a disk.
+Mesh made_cone(Index sides, float radius) {
+  Mesh cone;
+  cone.positions = {{0, 0, 2}, {0, 0, 0}};
+  for (Index k = 0; k < sides; ++k) {
+    const double angle = 2 * std::numbers::pi * k / sides;
+    cone.positions.push_back(
+        Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), 0).cast<float>());
+    const Index a = 2 + k, b = 2 + (k + 1) % sides;
+    cone.faces.push_back({0, a, b});
+    cone.faces.push_back({1, b, a});
+  }
+  return cone;
+}
+
+TEST(Features, TipsOfConesStay) {
+  const Mesh cone = made_cone(48, 1);
+  for (const OutputFaces faces :
+       {OutputFaces::quads, OutputFaces::quad_dominant, OutputFaces::triangles}) {
+    RemeshOptions options;
+    options.faces = faces;
+    options.face_count = 600;
+    const Mesh result = remesh(cone, options).mesh;
+    const auto is_tip = [&](const Vec3& p) {
+      const Eigen::Vector3d at = result.origin + p.cast<double>();
+      return (at - Eigen::Vector3d(0, 0, 2)).norm() < 1e-5;
+    };
+    EXPECT_EQ(std::ranges::count_if(result.positions, is_tip), 1);
+    made::expect_same_topology(mesh_statistics(result), mesh_statistics(cone));
+  }
+}
+
+TEST(Features, OnlyConesHaveTips) {
+  const auto tips = [](const Mesh& mesh, double edge_length) {
+    return find_cone_tips(mesh, build_graph(mesh), find_features(mesh, {}, edge_length),
+                          edge_length, Context());
+  };
+  const auto cone = [](Index sides, float radius) {
+    Mesh mesh = made_cone(sides, radius);
+    subdivide(mesh, 0.1, Context());
+    return mesh;
+  };
+  EXPECT_EQ(tips(cone(48, 1), 0.3), std::vector<Index>{0});
+  EXPECT_TRUE(tips(cone(48, 1), 3).empty()) << "its rim is nearer";
+  EXPECT_TRUE(tips(cone(48, 4), 0.3).empty()) << "too flat";
+  EXPECT_TRUE(tips(cone(5, 1), 0.3).empty()) << "a pyramid, whose creases meet";
+  for (const char* name : {"blob", "sphere", "bracket"}) {
+    Mesh shape = triangulate(sample_shape(name));
+    const double edge_length = 3 * edge_lengths(shape).mean;
+    EXPECT_TRUE(tips(shape, edge_length).empty()) << name;
+    add_noise(shape, 0.3);
+    EXPECT_TRUE(tips(shape, edge_length).empty()) << name << " with noise";
+  }
 }
 
 /// Which faces of a mesh over a flat square look down.

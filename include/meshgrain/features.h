@@ -19,7 +19,8 @@ struct FeatureLines {
   /// For each line, how strongly crosses follow it and how strongly lines of the lattice do, from 0
   /// (not at all) to 1.
   std::vector<float> orient, align;
-  /// Vertices where lines end or meet, or turn sharply, in increasing order: they stay.
+  /// Vertices where lines end or meet, or turn sharply, and tips of cones, in increasing order:
+  /// they stay.
   std::vector<Index> corners;
 
   std::size_t size() const { return starts.size() - 1; }

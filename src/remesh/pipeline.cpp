@@ -16,6 +16,7 @@
 #include "cloud/outliers.h"
 #include "cloud/smooth_noise.h"
 #include "features/askew_lines.h"
+#include "features/cone_tips.h"
 #include "features/lines_abreast.h"
 #include "field/bend_alignment.h"
 #include "field/transfer.h"
@@ -159,8 +160,21 @@ void Pipeline::find_lines() {
           "without creases: there are about as many of them as edges of faces of this size");
     }
     append(feature_constraints(plan_.features));
+    keep_cone_tips();
     append(guide_constraints(guides_, plan_.features.corners));
   });
+}
+
+void Pipeline::keep_cone_tips() {
+  if (feature_options().creases == Creases::none) return;
+  const double side = plan_.target.face_side(area_);
+  const auto tips = find_cone_tips(surface_, graph(), plan_.features, side, context_);
+  std::vector<Index>& corners = plan_.features.corners;
+  for (const Index v : tips) {
+    corners.push_back(v);
+    plan_.constraints.position.push_back({v, graph().positions[v], Vec3::Zero(), 1});
+  }
+  std::ranges::sort(corners);
 }
 
 bool Pipeline::may_leave_out_creases() const {

@@ -258,6 +258,7 @@ class Pipeline {
   bool leaves_out_creases() const { return plan_.room_for_creases == no_creases; }
   /// Whether there may be creases that nobody asked for.
   bool may_leave_out_creases() const;
+  void keep_cone_tips();
   /// Of all edges of the faces, about those that follow lines.
   double share_of_lines() const;
   /// Whether there are more lines than edges that could follow them, as where each facet of a
