@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "meshgrain/error.h"
+#include "remesh/check_input.h"
 #include "remesh/memory.h"
 #include "remesh/notes.h"
 #include "remesh/pipeline.h"
@@ -63,6 +64,7 @@ void check(const RemeshOptions& options) {
     throw Error("sizes by value are those of the input's vertices, not of its faces");
   }
   if (!(options.sizing.grading > 1)) throw Error("the grading of sizes must be larger than 1");
+  if (options.graph.neighbors == 0) throw Error("points of a cloud need neighbours: one at least");
   if (options.smoothing < 0) throw Error("the number of smoothing iterations must not be negative");
   if (options.graph.nodes == GraphNodes::faces && options.symmetry.any()) {
     throw Error("results can be made symmetric over the input's vertices, not over its faces");
@@ -179,6 +181,7 @@ RemeshResult remesh_whole(Mesh input, const RemeshOptions& options, const Contex
 
 RemeshResult remesh(Mesh input, const RemeshOptions& asked, const Context& context) {
   check(asked);
+  check_input(input, context);
   RemeshOptions options = asked;
   options.retries = check_memory(input, asked, context) && asked.retries;
   RemeshResult result = options.symmetry.any()
@@ -200,6 +203,7 @@ std::vector<RemeshResult> remesh_levels(Mesh input, std::span<const std::size_t>
   options.edge_length = 0;
   options.face_count = *std::max_element(face_counts.begin(), face_counts.end());
   check(options);
+  check_input(input, context);
   options.retries = check_memory(input, options, context) && options.retries;
   Pipeline pipeline(input, options, context);
   pipeline.clean_up(std::move(input));

@@ -609,6 +609,8 @@ TEST_F(Cli, WrongUsageIsRefused) {
   refused("-f 0", "--faces");
   refused("-f -3", "--faces");
   refused("-f many", "--faces");
+  refused("-f 1e3", "digits");
+  refused("--adaptive 1 --sizing uniform", "--adaptive");
   refused("-s nan", "--scale");
   refused("-s inf", "--scale");
   refused("-c nan", "--crease");
@@ -775,6 +777,7 @@ TEST_F(Cli, Picture) {
   run_well("picture cube.obj other.png --size 400 --no-dots");
   EXPECT_NE(read("other.png"), read("plain.png"));
   expect_refused("picture in.obj", 2, "FILE.png");
+  expect_refused("picture in.obj out.jpg", 2, ".png");
   expect_refused("picture missing.obj out.png", 1, "missing.obj");
   expect_refused("picture in.obj out.png --size 0", 1, "pixels");
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -15,6 +16,7 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/output.h"
@@ -761,8 +763,13 @@ constexpr const char* text_stl =
     "  endloop\n endfacet\nendsolid a name\n";
 
 TEST_F(Io, StlTextIsWelded) {
-  for (const char* name : {"a.stl", "a.STL", "without-extension"}) {
-    const Mesh mesh = read(name, text_stl);
+  std::string capitals = text_stl;
+  for (char& c : capitals) c = static_cast<char>(std::toupper(c));
+  for (const auto& [name, text] : {std::pair<const char*, std::string>{"a.stl", text_stl},
+                                   {"a.STL", text_stl},
+                                   {"without-extension", text_stl},
+                                   {"capitals.stl", capitals}}) {
+    const Mesh mesh = read(name, text);
     EXPECT_EQ(mesh.positions.size(), 4u);
     EXPECT_EQ(polygons(mesh), (Polygons{{0, 1, 2}, {1, 3, 2}}));
   }

@@ -1,5 +1,6 @@
 #include "picture_command.h"
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,9 @@ void picture_command(int argc, char** argv) {
   if (!up.empty()) options.up = Eigen::Vector3f(up.data());
   options.edges = !no_edges;
   options.irregular = !no_dots;
+  if (std::filesystem::path(output).extension() != ".png") {
+    throw UsageError("pictures are written as PNG: \"" + output + "\" does not end in .png");
+  }
   check_place(output);
   Context context;
   interruptible(context, [&] {

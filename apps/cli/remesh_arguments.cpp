@@ -73,6 +73,9 @@ std::string refuse_unless_count(const std::string& text) {
   if (finite_number(text).value_or(0) > most) {
     return fmt::format("\"{}\" is more than the {} that a mesh can have", text, most);
   }
+  if (text.find_first_not_of("0123456789") != text.npos) {
+    return "\"" + text + "\" is not a whole positive number, in digits alone";
+  }
   return refuse_unless_positive(text);
 }
 
@@ -389,7 +392,10 @@ void parse_sizing(Arguments& a) {
     a.read.value_name = rest;
   } else if (a.sizing == "curvature") {
     if (sizing.adaptive == 0) sizing.adaptive = 1;
-  } else if (a.sizing != "uniform") {
+  } else if (a.sizing == "uniform") {
+    if (sizing.adaptive != 0)
+      throw UsageError("--adaptive and --sizing uniform exclude each other");
+  } else if (!a.sizing.empty()) {
     throw UsageError("--sizing \"" + a.sizing +
                      "\" is none of uniform, curvature, distance:X,Y,Z, value:NAME");
   }

@@ -21,7 +21,7 @@ struct Arguments {
   bool ignored = false;
   bool target_given = false;
   std::vector<std::size_t> levels;  // of --lod
-  std::string energy, orientation_energy, sizing = "uniform", density;
+  std::string energy, orientation_energy, sizing, density;
   std::vector<std::string> guides;
   ReadOptions read;
   RemeshOptions remesh;

@@ -38,7 +38,9 @@ bool has_binary_size(std::string_view bytes) {
 
 bool begins_with_solid(std::string_view bytes) {
   bytes.remove_prefix(std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size()));
-  return bytes.starts_with("solid") && (bytes.size() == 5 || bytes[5] <= ' ');
+  constexpr std::string_view solid = "solid";
+  return is_same_word(bytes.substr(0, solid.size()), solid) &&
+         (bytes.size() == solid.size() || bytes[solid.size()] <= ' ');
 }
 
 /// Binary files may begin with "solid" too, but hold zeros soon.
@@ -85,20 +87,21 @@ void read_binary(const Input& input, DistinctPositions& vertices, Faces& faces) 
 /// single precision cannot hold, but no more than that.
 void read_text(const Input& input, Coordinates& corners, Faces& faces) {
   Text text(input);
+  const auto is = [&](std::string_view name) { return text.word_is_in_any_case(name); };
   std::vector<Index> face;
   bool in_solid = false;
   bool in_loop = false;
   for (std::size_t line = 0; !text.file_ends(); ++line) {
     if (line % 65536 == 0) input.progress(text.at());
     if (in_loop) {
-      if (text.word_is("vertex")) {
+      if (is("vertex")) {
         text.advance(6);
         const double x = text.number("coordinate x");
         const double y = text.number("coordinate y");
         const double z = text.number("coordinate z");
         face.push_back(static_cast<Index>(corners.size()));
         corners.push(x, y, z);
-      } else if (text.word_is("endloop")) {
+      } else if (is("endloop")) {
         text.advance(7);
         if (face.size() >= 3) faces.push_back(face);
         face.clear();
@@ -107,11 +110,12 @@ void read_text(const Input& input, Coordinates& corners, Faces& faces) {
         const char* const at = text.at();
         text.fail(at, "expected \"vertex\" or \"endloop\", found " + in_quotes(text.word()));
       }
-    } else if (text.word_is("solid") || text.word_is("endsolid")) {  // a name may follow
-      in_solid = text.peek() == 's';
+    } else if (is("solid") || is("endsolid")) {  // a name may follow
+      in_solid = is("solid");
       text.next_line();
-    } else if (text.word() == "loop") {  // all else, such as the normals, follows from the corners
-      in_loop = true;
+    } else {  // all else, such as the normals, follows from the corners
+      in_loop = is("loop");
+      text.word();
     }
   }
   if (in_loop) text.fail("the file ends within a facet");

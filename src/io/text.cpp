@@ -21,6 +21,11 @@ char find_newline(std::string_view bytes) {
 
 }  // namespace
 
+bool is_same_word(std::string_view a, std::string_view b) {
+  const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
+  return std::ranges::equal(a, b, {}, small, small);
+}
+
 Text::Text(const Input& input)
     : input_(input), at_(input.begin()), end_(input.end()), newline_(find_newline(input.bytes())) {
   if (input.bytes().starts_with("\xef\xbb\xbf")) at_ += 3;
@@ -45,6 +50,11 @@ const char* Text::line_after(const char* from, std::size_t bytes) const {
 
 bool Text::word_is(std::string_view name) const {
   return std::string_view(at_, end_).starts_with(name) && ends_word(at_ + name.size());
+}
+
+bool Text::word_is_in_any_case(std::string_view name) const {
+  const std::string_view here = std::string_view(at_, end_).substr(0, name.size());
+  return is_same_word(here, name) && ends_word(at_ + name.size());
 }
 
 std::string_view Text::word() {

@@ -8,6 +8,9 @@
 
 namespace meshgrain::io {
 
+/// Whether two words are the same, but for capital letters.
+bool is_same_word(std::string_view a, std::string_view b);
+
 /// A cursor over the text of a file, whose lines may end in LF, CR LF or CR alone. Everything else
 /// up to the space character separates words, and so does a backslash at the end of a line, which
 /// continues it. A `#` where a word would begin starts a comment.
@@ -51,6 +54,8 @@ class Text {
 
   /// Whether the word here is `name`, up to its end.
   bool word_is(std::string_view name) const;
+  /// The same, whether in capital letters or small ones.
+  bool word_is_in_any_case(std::string_view name) const;
   /// Reads the word here; empty if the line ends.
   std::string_view word();
   /// Reads the rest of the line, without the space around it and up to a comment.
