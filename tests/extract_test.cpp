@@ -461,6 +461,29 @@ TEST(RemoveStrips, AHoleOfAFewEdgesStaysOpen) {
   made::expect_same_topology(mesh_statistics(extraction.mesh), before);
 }
 
+/// Of which several go, and come, at a time.
+TEST(RemoveStrips, ManyRowsLeaveAGridAndManyMoreDoSo) {
+  constexpr Index n = 121;
+  Extraction extraction = grid_with_a_hole(n);
+  const MeshStatistics before = mesh_statistics(extraction.mesh);
+  const auto is_grid_of = [&](std::size_t faces) {
+    const MeshStatistics s = mesh_statistics(extraction.mesh);
+    made::expect_same_topology(s, before);
+    EXPECT_EQ(s.faces, faces);
+    EXPECT_EQ(s.irregular_vertices, before.irregular_vertices);
+    EXPECT_EQ(s.inverted_quads, 0u);
+    EXPECT_NEAR(surface_area(extraction.mesh), n * n - 1, 1e-2 * n * n);
+  };
+  const std::size_t gone = remove_strips(extraction, 60 * n, 61 * n, Context());
+  EXPECT_GE(gone, 60u * n);
+  EXPECT_LE(gone, 61u * n);
+  is_grid_of(before.faces - gone);
+  const std::size_t more = add_strips(extraction, 60 * n, 61 * n, Context());
+  EXPECT_GE(more, 60u * n);
+  EXPECT_LE(more, 61u * n);
+  is_grid_of(before.faces - gone + more);
+}
+
 TEST(AddStrips, AGridStaysAGrid) {
   constexpr Index n = 7;
   Extraction extraction = grid_with_a_hole(n);

@@ -55,15 +55,23 @@ void cut(Extraction& extraction, const QuadStrips& strips, const QuadStrip& stri
 std::size_t add_strips(Extraction& extraction, std::size_t least, std::size_t most,
                        const Context& context) {
   std::size_t done = 0;
-  while (done < least) {
+  for (std::size_t strips_more = 0; done < least;) {
     context.check();
     const QuadStrips strips(extraction);
     std::vector<QuadStrip> candidates = strips.up_to(most - done);
     std::erase_if(candidates, crosses_itself);
-    if (candidates.empty()) break;
-    const auto best = std::ranges::max_element(candidates, {}, &QuadStrip::narrowest);
-    done += best->faces.size();
-    cut(extraction, strips, *best);
+    std::ranges::stable_sort(candidates, std::ranges::greater(), &QuadStrip::narrowest);
+    StripsApart apart(extraction.mesh, strips_at_once(strips_more));
+    std::vector<QuadStrip> chosen;
+    for (QuadStrip& strip : candidates) {
+      if (done >= least || apart.are_enough()) break;
+      if (strip.faces.size() > most - done || !apart.add(strip.faces)) continue;
+      done += strip.faces.size();
+      chosen.push_back(std::move(strip));
+    }
+    if (chosen.empty()) break;
+    strips_more += chosen.size();
+    for (const QuadStrip& strip : chosen) cut(extraction, strips, strip);
   }
   return done;
 }

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -15,6 +17,41 @@ struct QuadStrip {
   std::vector<Index> rungs;  // the corner (place in Faces::corners()) where each edge starts
   float width = 0;           // mean length of a rung
   float narrowest = 0;       // the least one
+};
+
+/// How many strips to change before all are looked for again, if so many were changed already: one
+/// after the other for as long as that takes little time.
+inline std::size_t strips_at_once(std::size_t changed) {
+  constexpr std::size_t few = 16;
+  return std::max<std::size_t>(1, changed / few);
+}
+
+/// Strips that do not touch each other.
+class StripsApart {
+ public:
+  /// No more than `most` of them.
+  StripsApart(const Mesh& mesh, std::size_t most)
+      : mesh_(mesh), touched_(mesh.positions.size(), 0), left_(most) {}
+
+  bool are_enough() const { return left_ == 0; }
+
+  /// Takes in a strip, if no vertex of the faces that it changes is one of those of others.
+  bool add(const std::vector<Index>& faces) {
+    const auto is_touched = [&](Index f) {
+      return std::ranges::any_of(mesh_.faces[f], [&](Index v) { return touched_[v] != 0; });
+    };
+    if (left_ == 0 || std::ranges::any_of(faces, is_touched)) return false;
+    for (const Index f : faces) {
+      for (const Index v : mesh_.faces[f]) touched_[v] = 1;
+    }
+    --left_;
+    return true;
+  }
+
+ private:
+  const Mesh& mesh_;
+  std::vector<std::uint8_t> touched_;
+  std::size_t left_;
 };
 
 /// The strips of a mesh of quads.

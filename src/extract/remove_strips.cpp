@@ -29,6 +29,16 @@ class Removal {
   Removal(const Mesh& mesh, const QuadStrips& strips, const Context& context)
       : mesh_(mesh), strips_(strips), around_(vertex_faces(mesh, context)) {}
 
+  /// The faces around the vertices of a strip.
+  std::vector<Index> faces_around(const QuadStrip& strip) const {
+    std::vector<Index> vertices;
+    for (const Index corner : strip.rungs) {
+      const Edge rung = strips_.ends(corner);
+      vertices.insert(vertices.end(), rung.begin(), rung.end());
+    }
+    return faces_of(around_, vertices);
+  }
+
   bool may_go(const QuadStrip& strip) const {
     std::vector<Index> vertices;
     for (const Index corner : strip.rungs) {
@@ -113,19 +123,22 @@ class Removal {
   VertexFaces around_;
 };
 
-void remove(Extraction& extraction, const QuadStrips& strips, const QuadStrip& strip) {
+void remove(Extraction& extraction, const QuadStrips& strips,
+            const std::vector<QuadStrip>& chosen) {
   Mesh& mesh = extraction.mesh;
   std::vector<Index> becomes(mesh.positions.size());
   std::iota(becomes.begin(), becomes.end(), Index{0});
-  for (const Index corner : strip.rungs) {
-    const auto [a, b] = stays_and_goes(strips, strips.ends(corner));
-    if (strips.hold(a) == free_vertex) {
-      mesh.positions[a] = 0.5f * (mesh.positions[a] + mesh.positions[b]);
-    }
-    becomes[b] = a;
-  }
   std::vector<std::uint8_t> gone(mesh.faces.size(), 0);
-  for (const Index f : strip.faces) gone[f] = 1;
+  for (const QuadStrip& strip : chosen) {
+    for (const Index corner : strip.rungs) {
+      const auto [a, b] = stays_and_goes(strips, strips.ends(corner));
+      if (strips.hold(a) == free_vertex) {
+        mesh.positions[a] = 0.5f * (mesh.positions[a] + mesh.positions[b]);
+      }
+      becomes[b] = a;
+    }
+    for (const Index f : strip.faces) gone[f] = 1;
+  }
   Faces kept;
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     if (!gone[f]) kept.push_back(std::as_const(mesh.faces)[f]);
@@ -149,16 +162,22 @@ void remove(Extraction& extraction, const QuadStrips& strips, const QuadStrip& s
 std::size_t remove_strips(Extraction& extraction, std::size_t least, std::size_t most,
                           const Context& context) {
   std::size_t done = 0;
-  while (done < least) {
+  for (std::size_t strips_gone = 0; done < least;) {
     context.check();
     const QuadStrips strips(extraction);
     const Removal removal(extraction.mesh, strips, context);
-    const std::vector<QuadStrip> candidates = strips.up_to(most - done);
-    const auto best = std::ranges::find_if(
-        candidates, [&](const QuadStrip& strip) { return removal.may_go(strip); });
-    if (best == candidates.end()) break;
-    done += best->faces.size();
-    remove(extraction, strips, *best);
+    StripsApart apart(extraction.mesh, strips_at_once(strips_gone));
+    std::vector<QuadStrip> chosen;
+    for (QuadStrip& strip : strips.up_to(most - done)) {
+      if (done >= least || apart.are_enough()) break;
+      const bool fits = strip.faces.size() <= most - done && removal.may_go(strip);
+      if (!fits || !apart.add(removal.faces_around(strip))) continue;
+      done += strip.faces.size();
+      chosen.push_back(std::move(strip));
+    }
+    if (chosen.empty()) break;
+    strips_gone += chosen.size();
+    remove(extraction, strips, chosen);
   }
   return done;
 }

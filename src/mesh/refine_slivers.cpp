@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <initializer_list>
 #include <map>
 #include <queue>
 #include <set>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -35,6 +37,10 @@ double vertices_of_sliver(const Mesh& mesh, std::size_t f, double limit) {
   double sum = 0;
   for (const double side : sides) sum += (std::max(std::ceil(side / limit), 1.0) - 1) / 2;
   return sum;
+}
+
+std::uint64_t key_of(const std::array<Index, 2>& edge) {
+  return std::uint64_t{edge[0]} << 32 | edge[1];
 }
 
 /// The triangles of a mesh, with those across their edges, so that edges can be split and turned.
@@ -75,8 +81,15 @@ class Refinement {
   Index midpoint(Index h);
   void split(Index h);
   void turn_edges();
-  bool should_turn(Index h) const;
-  bool are_joined(Index g, Index h) const;
+  bool should_turn(Index h);
+  bool are_joined(Index g, Index h);
+  bool is_edge(Index a, Index b);
+  void count_sides(Index triangle, int change);
+  /// To be called with -1 before triangles change, and with 1 after.
+  void change_sides(std::initializer_list<Index> triangles, int change) {
+    if (sides_.empty()) return;
+    for (const Index t : triangles) count_sides(t, change);
+  }
   void turn(Index h);
 
   struct LongEdge {
@@ -95,6 +108,8 @@ class Refinement {
   std::map<std::array<Index, 2>, Index> midpoints_;  // of edges that are not between two triangles
   std::priority_queue<LongEdge> queue_;
   std::vector<Index> to_check_;  // edges that may not be Delaunay
+  // How many triangles have an edge between two vertices; empty until somebody asks.
+  std::unordered_map<std::uint64_t, int> sides_;
   std::size_t most_turns_ = 0;
 };
 
@@ -171,9 +186,11 @@ void Refinement::split(Index h) {
   const auto halve = [&](Index side) {
     const Index b = corner(next(side)), apex = corner(last(side));
     const auto added = static_cast<Index>(3 * triangles_.size());
+    change_sides({side / 3}, -1);
     triangles_.push_back({{m, b, apex}, {no_index, no_index, no_index}});
     link(added + 1, across(next(side)));
     triangles_[side / 3].corners[next(side) % 3] = m;
+    change_sides({side / 3, added / 3}, 1);
     link(next(side), added + 2);
     for (const Index g : {side, added, added + 1, added + 2}) push_if_long(g);
     for (const Index opposite : {last(side), added + 1}) to_check_.push_back(opposite);
@@ -200,7 +217,7 @@ void Refinement::turn_edges() {
 }
 
 /// Whether the other diagonal is Delaunay, and nearly in the place of this one.
-bool Refinement::should_turn(Index h) const {
+bool Refinement::should_turn(Index h) {
   const Index other = across(h);
   if (other == no_index) return false;
   const Index a = corner(h), b = corner(next(h)), c = corner(last(h)), d = corner(last(other));
@@ -225,12 +242,15 @@ bool Refinement::should_turn(Index h) const {
 
 /// Whether an edge joins the origins of two halfedges already, or might where one cannot look. Goes
 /// around both at once, as one of them may be the apex of a cone.
-bool Refinement::are_joined(Index g, Index h) const {
+bool Refinement::are_joined(Index g, Index h) {
+  constexpr int few = 64;  // steps around, which take less time than to look up an edge
   const Index c = corner(g), d = corner(h);
   const bool look_around_c = !at_rim_[c], look_around_d = !at_rim_[d];
   if (!look_around_c && !look_around_d) return true;
   Index from_c = g, from_d = h;
+  int steps = 0;
   do {
+    if (++steps > few) return is_edge(c, d);
     if (look_around_c) {
       if (corner(next(from_c)) == d) return true;
       from_c = across(last(from_c));
@@ -243,14 +263,31 @@ bool Refinement::are_joined(Index g, Index h) const {
   return false;
 }
 
+bool Refinement::is_edge(Index a, Index b) {
+  if (sides_.empty()) {
+    for (Index t = 0; t < triangles_.size(); ++t) count_sides(t, 1);
+  }
+  const auto found = sides_.find(key_of(edge_of(a, b)));
+  return found != sides_.end() && found->second > 0;
+}
+
+void Refinement::count_sides(Index triangle, int change) {
+  const auto& [a, b, c] = triangles_[triangle].corners;
+  for (const auto& edge : {edge_of(a, b), edge_of(b, c), edge_of(c, a)}) {
+    sides_[key_of(edge)] += change;
+  }
+}
+
 void Refinement::turn(Index h) {
   const Index other = across(h);
   const Index a = corner(h), b = corner(next(h)), c = corner(last(h)), d = corner(last(other));
   const Index bc = across(next(h)), ca = across(last(h)), ad = across(next(other)),
               db = across(last(other));
   const Index t = h / 3, u = other / 3;
+  change_sides({t, u}, -1);
   triangles_[t] = {{a, d, c}, {no_index, no_index, no_index}};
   triangles_[u] = {{d, b, c}, {no_index, no_index, no_index}};
+  change_sides({t, u}, 1);
   link(3 * t, ad);
   link(3 * t + 1, 3 * u + 2);
   link(3 * t + 2, ca);
