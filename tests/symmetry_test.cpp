@@ -7,7 +7,9 @@
 #include <map>
 #include <numbers>
 #include <set>
+#include <string>
 
+#include "has_note.h"
 #include "made_fields.h"
 #include "mesh/border.h"
 #include "meshgrain/error.h"
@@ -162,6 +164,23 @@ TEST(Symmetry, SeveralPlanesAtOnce) {
 }
 
 /// The result is that without the option, and says why.
+/// Of so few faces an eighth has hardly one in each of its planes.
+TEST(Symmetry, FewFacesKeepTheTopology) {
+  for (const char* name : {"torus", "three-holes"}) {
+    const Mesh shape = sample_shape(name);
+    for (const std::size_t faces : {20u, 40u}) {
+      SCOPED_TRACE(std::string(name) + " of " + std::to_string(faces));
+      RemeshOptions options;
+      options.faces = OutputFaces::quad_dominant;
+      options.face_count = faces;
+      options.symmetry.axes = {true, std::string(name) == "torus", true};
+      const RemeshResult result = remesh(shape, options);
+      made::expect_same_topology(mesh_statistics(result.mesh), mesh_statistics(shape));
+      EXPECT_FALSE(made::has_note(result, "the halves"));
+    }
+  }
+}
+
 TEST(Symmetry, WhatIsNotSymmetricStaysWhole) {
   const Mesh mesh = symmetric_blob(0);
   RemeshOptions options;

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <utility>
 
+#include "measure/face_shape.h"
 #include "mesh/border.h"
 #include "meshgrain/error.h"
 #include "meshgrain/statistics.h"
@@ -82,6 +84,74 @@ Topology topology(const Mesh& mesh) {
   return {s.components, s.boundary_loops, s.euler};
 }
 
+/// Cuts a mesh at planes, so that one part of it is left, and lets the options be those for this
+/// part. `side`: of the faces to be.
+void cut_to_part(Mesh& mesh, RemeshOptions& options, const std::vector<MirrorPlane>& planes,
+                 double side, std::vector<std::string>& notes, const Context& context) {
+  for (const MirrorPlane& plane : planes) {
+    if (const std::size_t count = count_faces_in(mesh, plane); count > 0) {
+      notes.push_back("left out " + std::to_string(count) + " faces in the mirror plane across " +
+                      "xyz"[plane.axis]);
+    }
+    cut_at(mesh, plane);
+    // Positions now count from the plane, and are in the units of the input from its origin.
+    options.guides = fold_guides(options.guides, {plane.axis, mesh.origin[plane.axis], 0});
+    options.face_count = (options.face_count + 1) / 2;
+    if (options.vertex_count > 0) {
+      const double in_both = length_in_plane(mesh, plane.axis, context) / side;
+      options.vertex_count =
+          (options.vertex_count + static_cast<std::size_t>(std::lround(in_both)) + 1) / 2;
+    }
+    // A point beyond the plane has its mirror image on this side.
+    double& coordinate = options.sizing.point[plane.axis];
+    const double middle = mesh.origin[plane.axis];
+    coordinate = middle + std::abs(coordinate - middle);
+  }
+}
+
+/// One part of a mesh that was cut at planes, remeshed, and with all of its mirror images.
+RemeshedHalf remesh_part(Mesh part, const RemeshOptions& options,
+                         const std::vector<MirrorPlane>& planes, const RemeshHalf& remesh_half,
+                         const Context& context) {
+  const bool is_closed = !planes.empty() && has_border_in_planes_only(part, planes, context);
+  RemeshedHalf made = remesh_half(std::move(part), options, context);
+  Mesh& mesh = made.result.mesh;
+  if (is_closed) put_border_into_planes(mesh, planes, context);
+  const double near =
+      is_closed ? std::numeric_limits<double>::min() : 0.2 * edge_lengths(mesh, context).mean;
+  for (const MirrorPlane& plane : planes) {
+    add_mirror_image(mesh, plane.axis, near);
+    made.faults = {2 * made.faults.inverted, 2 * made.faults.crossings};
+  }
+  return made;
+}
+
+/// Whether such a part with its mirror images is what the mesh was.
+bool is_part_of(Mesh part, const std::vector<MirrorPlane>& planes, const Topology& whole) {
+  for (const MirrorPlane& plane : planes) {
+    add_mirror_image(part, plane.axis, std::numeric_limits<double>::min());
+  }
+  return topology(part) == whole;
+}
+
+/// Of few faces a part may have none that keeps its border in each of the planes: makes up to eight
+/// times as many in place of those of `made`. Returns whether they hang together as the whole did.
+bool make_finer(RemeshedHalf& made, const Mesh& part, RemeshOptions options,
+                const std::vector<MirrorPlane>& planes, const Topology& whole,
+                const RemeshHalf& remesh_half, const Context& context) {
+  constexpr int attempts = 3;
+  for (int k = 0; k < attempts; ++k) {
+    options.edge_length /= std::numbers::sqrt2;
+    options.face_count *= 2;
+    options.vertex_count *= 2;
+    RemeshedHalf other = remesh_part(part, options, planes, remesh_half, context);
+    if (topology(other.result.mesh) != whole) continue;
+    made = std::move(other);
+    return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const RemeshHalf& remesh_half,
@@ -113,43 +183,27 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const RemeshHal
       options.features.creases = Creases::marked;
     }
   }
-  for (const MirrorPlane& plane : planes) {
-    if (const std::size_t count = count_faces_in(input, plane); count > 0) {
-      notes.push_back("left out " + std::to_string(count) + " faces in the mirror plane across " +
-                      "xyz"[plane.axis]);
-    }
-    cut_at(input, plane);
-    // Positions now count from the plane, and are in the units of the input from its origin.
-    options.guides = fold_guides(options.guides, {plane.axis, input.origin[plane.axis], 0});
-    options.face_count = (options.face_count + 1) / 2;
-    if (options.vertex_count > 0) {
-      const double in_both = length_in_plane(input, plane.axis, context) / side;
-      options.vertex_count =
-          (options.vertex_count + static_cast<std::size_t>(std::lround(in_both)) + 1) / 2;
-    }
-    // A point beyond the plane has its mirror image on this side.
-    double& coordinate = options.sizing.point[plane.axis];
-    const double middle = input.origin[plane.axis];
-    coordinate = middle + std::abs(coordinate - middle);
-  }
-  const bool is_closed = !planes.empty() && has_border_in_planes_only(input, planes, context);
+  cut_to_part(input, options, planes, side, notes, context);
   // Where a half is a single quad wide, its two sides would be in the plane.
   if (!planes.empty()) options.fine_lattice = false;
-  auto [result, faults] = remesh_half(std::move(input), options, context);
-  if (is_closed) put_border_into_planes(result.mesh, planes, context);
-  const double near = is_closed ? std::numeric_limits<double>::min()
-                                : 0.2 * edge_lengths(result.mesh, context).mean;
+  const bool has_few_faces = surface_area(input, context) < few_faces * side * side;
+  const Mesh part = has_few_faces ? input : Mesh();
+  RemeshedHalf made = remesh_part(std::move(input), options, planes, remesh_half, context);
   for (const MirrorPlane& plane : planes) {
-    add_mirror_image(result.mesh, plane.axis, near);
-    faults = {2 * faults.inverted, 2 * faults.crossings};
     notes.emplace_back("made symmetric across ").push_back("xyz"[plane.axis]);
   }
-  if (before.components > 0 && topology(result.mesh) != before) {
-    notes.emplace_back(
-        "the halves of the input are not alike: a hole, handle or piece that only one "
-        "has is lost, or on both sides now");
+  if (before.components > 0 && topology(made.result.mesh) != before) {
+    const bool may_be_finer = !part.faces.empty() && is_part_of(part, planes, before);
+    if (!may_be_finer) {
+      notes.emplace_back(
+          "the halves of the input are not alike: a hole, handle or piece that only one "
+          "has is lost, or on both sides now");
+    } else if (!make_finer(made, part, options, planes, before, remesh_half, context)) {
+      notes.emplace_back("the result does not hang together as the input does: ask for more faces");
+    }
   }
-  note_faults(result, faults);
+  RemeshResult& result = made.result;
+  note_faults(result, made.faults);
   result.report.input_vertices = vertices;
   result.report.input_faces = faces;
   result.report.notes.insert(result.report.notes.end(), notes.begin(), notes.end());
