@@ -182,6 +182,14 @@ TEST_F(Models, EndsOfLimbsAreReached) {
   }
 }
 
+/// One of homer's is lost where its rows of faces are cancelled.
+TEST_F(Models, FingersAreNotLost) {
+  if (!files_.contains("homer")) GTEST_SKIP() << "no homer among the models";
+  const Mesh input = read_mesh(files_["homer"]);
+  const Mesh result = remesh_to(input, OutputFaces::quads, 5000);
+  EXPECT_LT(surface_distance(input, result, mesh_statistics(result).edge_mean).max, 1.3);
+}
+
 /// The cow's is a broad tuft at a thin end: on a lattice without the singularities where it becomes
 /// wide there is a notch in it.
 TEST_F(Models, TailsAreWhole) {

@@ -12,10 +12,12 @@ namespace meshgrain {
 /// parts that they keep inside of.
 struct LostSurface {
   std::vector<Index> nodes;
-  double faces = 0;  // that would cover it
+  double faces = 0;  // that would cover it; or twice those of its largest patch, if these are more
 
   // What is hardly to be seen, before and after the faces are mended, which loses some more.
   static constexpr double little_before = 5, little = 8;
+  // A finger that is gone shows more than as much that is missing here and there.
+  static constexpr double weight_of_largest = 2;
 
   bool is_considerably_less_than(const LostSurface& other) const {
     return faces <= 0.7 * other.faces;

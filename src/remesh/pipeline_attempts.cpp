@@ -20,6 +20,30 @@
 #include "util/sort_unique.h"
 
 namespace meshgrain {
+namespace {
+
+/// The areas of the patches that some nodes hang together in.
+std::vector<double> areas_of_patches(const Graph& graph, const std::vector<Index>& nodes) {
+  std::vector<std::uint8_t> is_left(graph.size(), 0);
+  for (const Index i : nodes) is_left[i] = 1;
+  std::vector<double> areas;
+  std::vector<Index> patch;
+  for (const Index start : nodes) {
+    if (!std::exchange(is_left[start], std::uint8_t{0})) continue;
+    double area = 0;
+    patch = {start};
+    for (std::size_t k = 0; k < patch.size(); ++k) {
+      area += graph.areas[patch[k]];
+      for (const Index j : graph.neighbors_of(patch[k])) {
+        if (std::exchange(is_left[j], std::uint8_t{0})) patch.push_back(j);
+      }
+    }
+    areas.push_back(area);
+  }
+  return areas;
+}
+
+}  // namespace
 
 std::vector<Index> Pipeline::inverted_faces() const {
   const Mesh& mesh = made_.extraction.mesh;
@@ -54,8 +78,13 @@ LostSurface Pipeline::lost_surface() const {
   LostSurface lost;
   lost.nodes =
       find_bare_nodes(made_.extraction, around, graph(), scaled(plan_.lengths, side), context_);
-  for (const Index i : lost.nodes) lost.faces += graph().areas[i];
-  lost.faces /= plan_.target.face_area(area_);
+  double largest = 0, all = 0;
+  for (const double area : areas_of_patches(graph(), lost.nodes)) {
+    largest = std::max(largest, area);
+    all += area;
+  }
+  lost.faces =
+      std::max(all, LostSurface::weight_of_largest * largest) / plan_.target.face_area(area_);
   return lost;
 }
 
