@@ -533,6 +533,27 @@ TEST(Features, RaggedMarksAreFollowedEvenly) {
   EXPECT_LE(without_some, 1);
 }
 
+/// Stripes much narrower than faces: those that follow them would bite pieces out of the border.
+TEST(Features, MarksGoWhereTheyAreAsManyAsEdges) {
+  constexpr Index side = 60;
+  Mesh square;
+  const auto at = [](Index x, Index y) { return y * (side + 1) + x; };
+  for (Index y = 0; y <= side; ++y) {
+    for (Index x = 0; x <= side; ++x) {
+      square.positions.push_back({static_cast<float>(x), static_cast<float>(y), 0});
+      if (x == 0 || y == 0) continue;
+      square.faces.push_back({at(x - 1, y - 1), at(x, y - 1), at(x, y), at(x - 1, y)});
+      if (x % 2 == 0 && x < side) square.marked_edges.push_back({at(x, y - 1), at(x, y)});
+    }
+  }
+  RemeshOptions options;
+  options.face_count = 200;
+  const RemeshResult result = remesh(square, options);
+  expect_sound(result.mesh, square, options.face_count);
+  EXPECT_TRUE(made::has_note(result, "without creases and marked edges"));
+  EXPECT_NEAR(surface_area(result.mesh), side * side, 1e-3 * side * side);
+}
+
 /// The borders of materials, such as the lanes of a running track, much narrower than faces.
 TEST(Features, MarksYieldToSoundFaces) {
   constexpr Index side = 80;

@@ -53,7 +53,9 @@ struct FeatureOptions {
 };
 
 /// The feature lines of a triangle mesh. Turns of a line count as corners if they are sharp both
-/// from edge to edge and over `edge_length`, that of the output.
+/// from edge to edge and over `edge_length`, that of the output. Marked edges that are ragged where
+/// the surface is smooth, as where materials meet along the sides of triangles, become lines that
+/// run evenly. Tips of cones are not among the corners yet.
 FeatureLines find_features(const Mesh& triangles, const FeatureOptions& options, double edge_length,
                            const Context& context = Context());
 

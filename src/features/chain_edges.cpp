@@ -78,7 +78,7 @@ class Chaining {
   bool goes_on(Index v) const {
     const auto kind = [&](Index spoke) {
       const LineKind own = spokes_[spoke].kind;
-      return own == LineKind::marked ? LineKind::crease : own;
+      return own == LineKind::marked || own == LineKind::drawn ? LineKind::crease : own;
     };
     return degree(v) == 2 && kind(offsets_[v]) == kind(offsets_[v] + 1);
   }
@@ -140,9 +140,27 @@ class Chaining {
       return false;
     }
     if (arm_ == 0) return true;
-    const auto is_mark = [&](Index spoke) { return spokes_[spoke].kind == LineKind::marked; };
-    if (is_mark(back) && is_mark(ahead)) return turns_in_the_mean(v);
+    if (is_ragged(v)) return turns_in_the_mean(v);
     return is_sharp(at_arms_length(v, back), at_arms_length(v, ahead));
+  }
+
+  /// Whether a line that was drawn on the surface turns sharply at other vertices, too, less than
+  /// an arm's length from v.
+  bool is_ragged(Index v) const {
+    for (Index spoke = offsets_[v]; spoke < offsets_[v + 1]; ++spoke) {
+      if (spokes_[spoke].kind != LineKind::drawn) return false;
+    }
+    bool any = false;
+    for (Index spoke = offsets_[v]; spoke < offsets_[v + 1]; ++spoke) {
+      Vec3 before = Vec3::Zero();
+      double way = 0;
+      follow(v, spoke, arm_, [&](const Vec3& p, const Vec3& q) {
+        any = any || (way > 0 && is_sharp_turn(before, q - p));
+        before = q - p;
+        way += before.norm();
+      });
+    }
+    return any;
   }
 
   /// Where materials meet, or parts of a scan, the line between them is mostly ragged, along the

@@ -2,10 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <unordered_set>
+#include <utility>
 
 #include "measure/face_shape.h"
 #include "mesh/vertex_faces.h"
@@ -64,18 +66,22 @@ class Tips {
   /// pyramid.
   bool is_round(Index v) const {
     constexpr float cos40 = 0.766f;
+    std::vector<std::array<Index, 2>> sides;  // the other end of an edge, and a face beside it
     for (const Index f : around_[v]) {
-      const auto face = std::as_const(mesh_.faces)[f];
-      const Index next = face[(corner_of(face, v) + 1) % 3];
-      for (const Index g : around_[v]) {
-        const auto other = std::as_const(mesh_.faces)[g];
-        if (g == f || std::ranges::find(other, next) == other.end()) continue;
-        const Vec3 a = area_vector(face, mesh_.positions), b = area_vector(other, mesh_.positions);
-        if (a.dot(b) < cos40 * a.norm() * b.norm()) return false;
+      for (const Index w : std::as_const(mesh_.faces)[f]) {
+        if (w != v) sides.push_back({w, f});
       }
+    }
+    std::ranges::sort(sides);
+    for (std::size_t k = 1; k < sides.size(); ++k) {
+      if (sides[k][0] != sides[k - 1][0]) continue;
+      const Vec3 a = area(sides[k - 1][1]), b = area(sides[k][1]);
+      if (a.dot(b) < cos40 * a.norm() * b.norm()) return false;
     }
     return true;
   }
+
+  Vec3 area(Index f) const { return area_vector(std::as_const(mesh_.faces)[f], mesh_.positions); }
 
   /// What the angles around a vertex are short of a turn.
   double missing_angle(Index v) const {

@@ -8,6 +8,7 @@
 #include "features/leave_out_fragments.h"
 #include "features/mechanical_creases.h"
 #include "features/ragged_lines.h"
+#include "measure/face_shape.h"
 #include "mesh/border.h"
 #include "mesh/marks.h"
 #include "util/sort_unique.h"
@@ -19,15 +20,20 @@ using Edges = std::vector<std::array<Index, 2>>;
 
 /// The marked edges that are between two faces, sorted and each once: those of the border are lines
 /// as it is.
-Edges inner_marks(const Mesh& mesh, const Context& context) {
+std::vector<InnerEdge> inner_marks(const Mesh& mesh, const Context& context) {
   if (mesh.marked_edges.empty()) return {};
   const Edges marks = sorted_marks(mesh);
   const auto is_marked = [&](const InnerEdge& edge) {
     return std::binary_search(marks.begin(), marks.end(), edge.ends);
   };
-  Edges result;
-  for (const InnerEdge& edge : inner_edges(mesh, is_marked, context)) result.push_back(edge.ends);
-  return result;
+  return inner_edges(mesh, is_marked, context);
+}
+
+bool is_smooth(const Mesh& mesh, const InnerEdge& edge) {
+  constexpr double most_degrees = 20;
+  const Vec3 left = area_vector(mesh.faces[edge.left], mesh.positions);
+  const Vec3 right = area_vector(mesh.faces[edge.right], mesh.positions);
+  return left.dot(right) >= sharp_cosine(most_degrees) * left.norm() * right.norm();
 }
 
 struct RimAndCreases {
@@ -96,6 +102,13 @@ RimAndCreases rim_and_creases(const Mesh& mesh, const FeatureOptions& options, d
   return {rim_edges(mesh, context), {}};
 }
 
+FeatureLines even_lines(const Mesh& mesh, const std::vector<EdgeOfLine>& edges,
+                        const FeatureOptions& options, double edge_length, const Context& context) {
+  FeatureLines lines = chain_edges(mesh, edges, options, edge_length);
+  if (edge_length > 0) even_out_ragged_lines(lines, mesh, edges, edge_length, context);
+  return lines;
+}
+
 }  // namespace
 
 bool FeatureLines::is_closed(std::size_t line) const {
@@ -119,13 +132,18 @@ std::vector<EdgeOfLine> feature_edges(const Mesh& mesh, const FeatureOptions& op
     std::erase_if(creases,
                   [&](const auto& edge) { return std::ranges::binary_search(cuts, edge); });
   }
-  Edges marked;
-  if (options.creases != Creases::none) marked = inner_marks(mesh, context);
-  std::erase_if(marked, [&](const auto& edge) { return std::ranges::binary_search(cuts, edge); });
-  const LineKind kind = options.marks_may_go ? LineKind::crease : LineKind::marked;
   std::vector<EdgeOfLine> edges;
   for (const auto& ends : rim) edges.push_back({ends, LineKind::border});
-  for (const auto& ends : marked) edges.push_back({ends, kind});
+  Edges marked;
+  if (options.creases != Creases::none) {
+    for (const InnerEdge& mark : inner_marks(mesh, context)) {
+      if (std::ranges::binary_search(cuts, mark.ends)) continue;
+      marked.push_back(mark.ends);
+      edges.push_back({mark.ends, options.marks_may_go    ? LineKind::crease
+                                  : is_smooth(mesh, mark) ? LineKind::drawn
+                                                          : LineKind::marked});
+    }
+  }
   for (const auto& ends : creases) {
     const bool is_marked = std::binary_search(marked.begin(), marked.end(), ends);
     if (!is_marked) edges.push_back({ends, LineKind::crease});
@@ -147,8 +165,7 @@ FeatureLines find_features(const Mesh& mesh, const FeatureOptions& options,
     edges.push_back(edge);
     for (const Index v : edge.ends) on_guide[v] = 1;
   }
-  FeatureLines lines = chain_edges(mesh, edges, options, edge_length);
-  even_out_ragged_marks(lines, mesh, edges, edge_length, context);
+  FeatureLines lines = even_lines(mesh, edges, options, edge_length, context);
   for (const Index v : lines.corners) on_guide[v] = 0;
   for (std::size_t k = 0; k < lines.vertices.size(); ++k) {
     const Index v = lines.vertices[k];
@@ -163,8 +180,8 @@ FeatureLines find_features(const Mesh& mesh, const FeatureOptions& options,
 
 FeatureLines find_features(const Mesh& mesh, const FeatureOptions& options, double edge_length,
                            const Context& context) {
-  return chain_edges(mesh, feature_edges(mesh, options, edge_length, context), options,
-                     edge_length);
+  return even_lines(mesh, feature_edges(mesh, options, edge_length, context), options, edge_length,
+                    context);
 }
 
 }  // namespace meshgrain

@@ -52,35 +52,39 @@ class Course {
   std::vector<Eigen::Vector3d> sums_{Eigen::Vector3d::Zero()};
 };
 
-/// Whether a line turns sharply between its ends.
-bool is_ragged(const FeatureLines& lines, std::size_t line) {
+/// Whether a line turns sharply between its ends, and again within `reach`.
+bool is_ragged(const FeatureLines& lines, std::size_t line, double reach) {
   const auto& p = lines.positions;
+  double way = 2 * reach;  // since the last turn
   for (Index k = lines.begin(line) + 1; k + 1 < lines.end(line); ++k) {
-    if (is_sharp_turn(p[k] - p[k - 1], p[k + 1] - p[k])) return true;
+    way += (p[k] - p[k - 1]).norm();
+    if (!is_sharp_turn(p[k] - p[k - 1], p[k + 1] - p[k])) continue;
+    if (way < reach) return true;
+    way = 0;
   }
   return false;
 }
 
 }  // namespace
 
-void even_out_ragged_marks(FeatureLines& lines, const Mesh& mesh,
+void even_out_ragged_lines(FeatureLines& lines, const Mesh& mesh,
                            const std::vector<EdgeOfLine>& edges, double reach,
                            const Context& context) {
-  std::vector<std::array<Index, 2>> marks;
+  std::vector<std::array<Index, 2>> drawn;
   for (const EdgeOfLine& edge : edges) {
-    if (edge.kind == LineKind::marked) marks.push_back(edge.ends);
+    if (edge.kind == LineKind::drawn) drawn.push_back(edge.ends);
   }
-  std::ranges::sort(marks);
-  const auto is_of_marks = [&](std::size_t line) {
+  std::ranges::sort(drawn);
+  const auto is_drawn = [&](std::size_t line) {
     for (Index k = lines.begin(line) + 1; k < lines.end(line); ++k) {
       const auto ends = edge_of(lines.vertices[k - 1], lines.vertices[k]);
-      if (!std::ranges::binary_search(marks, ends)) return false;
+      if (!std::ranges::binary_search(drawn, ends)) return false;
     }
     return true;
   };
   std::vector<Vec3> normals;
-  for (std::size_t line = 0; line < lines.size() && !marks.empty(); ++line) {
-    if (!is_of_marks(line) || !is_ragged(lines, line)) continue;
+  for (std::size_t line = 0; line < lines.size() && !drawn.empty(); ++line) {
+    if (!is_drawn(line) || !is_ragged(lines, line, reach)) continue;
     if (normals.empty()) normals = vertex_normals(mesh, -1, context);
     const Index begin = lines.begin(line), end = lines.end(line);
     const std::vector<Vec3> before(lines.positions.begin() + begin, lines.positions.begin() + end);

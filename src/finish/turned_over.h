@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include "measure/face_shape.h"
 #include "mesh/vertex_faces.h"
 #include "meshgrain/extract.h"

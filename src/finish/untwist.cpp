@@ -28,7 +28,7 @@ class Untwisting {
 
   void run() {
     around_ = vertex_faces(mesh_, context_);
-    std::vector<Index> twisted = twisted_quads();
+    std::vector<Index> twisted = twisted_faces();
     const std::size_t faces = mesh_.faces.size();
     constexpr std::size_t hopeless = 5;  // one in so many
     if (twisted.empty() || twisted.size() > faces / hopeless) return;
@@ -47,7 +47,7 @@ class Untwisting {
         const std::size_t most = 50 + faces / 100;
         twisted.resize(std::min(twisted.size(), most));
         for (const Index f : twisted) mend(f, rings, price);
-        twisted = twisted_quads();
+        twisted = twisted_faces();
         if (twisted.empty()) return;
       }
     }
@@ -88,7 +88,7 @@ class Untwisting {
     return is_turned_over(extraction_, f, around_, node_normals_);
   }
 
-  std::vector<Index> twisted_quads() const {
+  std::vector<Index> twisted_faces() const {
     return indices_where(
         mesh_.faces.size(), [&](Index f) { return is_twisted(f); }, context_);
   }

@@ -265,6 +265,7 @@ bool Refinement::are_joined(Index g, Index h) {
 
 bool Refinement::is_edge(Index a, Index b) {
   if (sides_.empty()) {
+    sides_.reserve(2 * triangles_.size());
     for (Index t = 0; t < triangles_.size(); ++t) count_sides(t, 1);
   }
   const auto found = sides_.find(key_of(edge_of(a, b)));

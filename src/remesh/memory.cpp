@@ -143,7 +143,9 @@ Need needed_by_mesh(const Mesh& input, const RemeshOptions& options, const Targe
 }
 
 Need needed(const Mesh& input, const RemeshOptions& options, const Context& context) {
-  const Target target(options, options.faces, input.positions.size(), 1);
+  const std::size_t by_default =
+      default_vertex_count(input.positions.size(), input.is_point_cloud());
+  const Target target(options, options.faces, by_default, 1);
   Need need = input.is_point_cloud() ? needed_by_cloud(input, options, target)
                                      : needed_by_mesh(input, options, target, context);
   need.input += program + thread * context.threads() +

@@ -153,11 +153,12 @@ void Pipeline::find_lines() {
                                      plan_.room_for_creases * side, context_);
     };
     find();
-    if (may_leave_out_creases() && !has_marks() && lines_have_no_room()) {
+    if (may_leave_out_creases() && lines_have_no_room()) {
       plan_.room_for_creases = no_creases;
       find();
-      plan_.notes.emplace_back(
-          "without creases: there are about as many of them as edges of faces of this size");
+      plan_.notes.emplace_back(fmt::format(
+          "without creases{}: there are about as many of them as edges of faces of this size",
+          has_marks() ? " and marked edges" : ""));
     }
     append(feature_constraints(plan_.features));
     keep_cone_tips();
@@ -198,9 +199,10 @@ double Pipeline::share_of_lines() const {
 }
 
 bool Pipeline::lines_have_no_room() const {
-  // Of forty parts at 300 faces, lines of all but one take less.
-  constexpr double most = 0.75;
-  return share_of_lines() > most;
+  // Of forty parts at 300 faces, lines of all but one take less. Those that somebody drew go only
+  // where faces that follow them would bite pieces out of the border.
+  constexpr double most = 0.75, most_with_marks = 0.9;
+  return share_of_lines() > (has_marks() ? most_with_marks : most);
 }
 
 bool Pipeline::is_coarse_for_bends() const {
@@ -456,7 +458,8 @@ void Pipeline::report_fields() {
 
 void Pipeline::aim_at(OutputFaces lattice_faces) {
   plan_.lattice_faces = lattice_faces;
-  plan_.target = Target(wanted_, lattice_faces, clean_vertices_, frame_.scale);
+  const std::size_t by_default = default_vertex_count(clean_vertices_, is_cloud_);
+  plan_.target = Target(wanted_, lattice_faces, by_default, frame_.scale);
 }
 
 void Pipeline::change_target(const RemeshOptions& options) {

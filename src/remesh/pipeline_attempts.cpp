@@ -123,11 +123,11 @@ std::vector<std::array<Index, 2>> Pipeline::own(std::vector<std::array<Index, 2>
 
 Faults Pipeline::find_faults() {
   Faults faults;
+  if (!may_have_faults_) return faults;
+  const std::vector<Index> inverted = inverted_faces();
   // Of many faces, to look for crossings as well takes too long.
   constexpr std::size_t few = 100000;
-  const bool has_any =
-      may_have_faults_ && (made_.extraction.mesh.faces.size() < few || !inverted_faces().empty());
-  if (!has_any) return faults;
+  if (inverted.empty() && made_.extraction.mesh.faces.size() >= few) return faults;
   const Faces& faces = made_.extraction.mesh.faces;
   const auto add = [&](Index f) {
     for (const Index v : faces[f]) {
@@ -135,7 +135,6 @@ Faults Pipeline::find_faults() {
       faults.nodes.push_back(cuts_.empty() ? node : cuts_.sources[node]);
     }
   };
-  const std::vector<Index> inverted = inverted_faces();
   faults.inverted = inverted.size();
   std::ranges::for_each(inverted, add);
   sort_unique(faults.nodes);

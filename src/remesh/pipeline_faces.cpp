@@ -305,7 +305,7 @@ void Pipeline::finish_borders() {
 }
 
 void Pipeline::untwist_faces() {
-  if (options_.smoothing == 0 || posy_of(options_.faces) != 4) return;
+  if (options_.smoothing == 0 || options_.faces == OutputFaces::hexagons) return;
   const bool border_stays = keeps_border_ || !plan_.borders.empty();
   stage_("smoothing",
          [&] { untwist(made_.extraction, finishing_graph().normals, border_stays, context_); });

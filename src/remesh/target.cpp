@@ -16,13 +16,13 @@ int posy_of(OutputFaces faces) {
   return faces == OutputFaces::triangles || faces == OutputFaces::hexagons ? 6 : 4;
 }
 
-std::size_t default_vertex_count(std::size_t input_vertices) {
-  constexpr std::size_t least = 500;
-  return std::max(input_vertices / 16, least);
+std::size_t default_vertex_count(std::size_t input_vertices, bool is_cloud) {
+  constexpr std::size_t enough = 500;
+  return std::max(input_vertices / 16, is_cloud ? std::min(input_vertices, enough) : enough);
 }
 
-Target::Target(const RemeshOptions& options, OutputFaces lattice_faces, std::size_t input_vertices,
-               double scale) {
+Target::Target(const RemeshOptions& options, OutputFaces lattice_faces,
+               std::size_t default_vertices, double scale) {
   // A cell of the triangular lattice is two triangles, or one vertex; of its dual, two vertices or
   // one hexagon. A pure quad mesh has four quads, and four vertices, for each of the lattice's
   // before its split.
@@ -45,8 +45,7 @@ Target::Target(const RemeshOptions& options, OutputFaces lattice_faces, std::siz
     length_ = sum / static_cast<double>(lengths.size()) / scale;
   } else {
     is_asked_for_ = options.vertex_count > 0;
-    vertices_ = static_cast<double>(is_asked_for_ ? options.vertex_count
-                                                  : default_vertex_count(input_vertices));
+    vertices_ = static_cast<double>(is_asked_for_ ? options.vertex_count : default_vertices);
     cells_ = vertices_ / vertices_per_cell;
   }
 }

@@ -11,8 +11,9 @@ namespace meshgrain {
 int posy_of(OutputFaces faces);
 
 /// How many vertices the mesh is to have where nothing is asked for: a sixteenth of the input's, as
-/// suits scans; but of an input of few vertices, such as a part from CAD, enough for its shape.
-std::size_t default_vertex_count(std::size_t input_vertices);
+/// suits scans; but of a mesh of few vertices, such as a part from CAD, enough for its shape, and
+/// of a cloud of few points as many as these.
+std::size_t default_vertex_count(std::size_t input_vertices, bool is_cloud);
 
 /// Whether the input's edges cannot be split again once the sizes of faces are known: the nodes are
 /// its faces, or guides are cut into it.
@@ -26,9 +27,9 @@ class Target {
  public:
   Target() = default;
   /// `lattice_faces`: what the cells of the lattice become; for OutputFaces::quads each is four.
-  /// Where nothing is asked for, given positions say how fine they are.
-  /// `scale`: input units a unit of the surface.
-  Target(const RemeshOptions& options, OutputFaces lattice_faces, std::size_t input_vertices,
+  /// Where nothing is asked for, given positions say how fine they are; or, without these,
+  /// `default_vertices`. `scale`: input units a unit of the surface.
+  Target(const RemeshOptions& options, OutputFaces lattice_faces, std::size_t default_vertices,
          double scale);
 
   /// The edge length that gives a surface of this area as many lattice cells as are wanted; or the

@@ -54,7 +54,8 @@ double stretch(const Mesh& surface, const RemeshOptions& options, const Context&
   const VertexFaces around = vertex_faces(surface, context);
   const Graph graph = vertex_graph(surface, around, options.graph, context);
   const double area = std::accumulate(graph.areas.begin(), graph.areas.end(), 0.0);
-  const Target target(options, options.faces, surface.positions.size(), 1);
+  const std::size_t by_default = default_vertex_count(surface.positions.size(), false);
+  const Target target(options, options.faces, by_default, 1);
   const EdgeLength lengths = target.edge_lengths(graph, EdgeLength(surface.values),
                                                  target.growth(options.sizing.grading), context);
   return std::ranges::max(lengths.values) / target.edge_length(area);

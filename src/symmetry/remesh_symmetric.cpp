@@ -169,7 +169,7 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const RemeshHal
   options.symmetry = {};
   options.memory_limit = 0;  // has been looked at for the whole
   if (options.edge_length == 0 && options.face_count == 0 && options.vertex_count == 0) {
-    options.vertex_count = default_vertex_count(input.positions.size());
+    options.vertex_count = default_vertex_count(input.positions.size(), false);
   }
   Topology before;
   double side = 0;  // of the faces to be
