@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "meshgrain/error.h"
@@ -52,6 +55,21 @@ TEST(Levels, KeepWhatIsPainted) {
     }
     // Four fifths, but for the change from one to the other.
     EXPECT_NEAR(left / static_cast<double>(level.mesh.faces.size()), 0.77, 0.07);
+  }
+}
+
+/// Of marks that are everywhere.
+TEST(Levels, EachTellsWhatWasDoneOnce) {
+  Mesh plate = sample_shape("plate", 0.5);
+  for (std::size_t f = 0; f < plate.faces.size(); ++f) {
+    const auto face = std::as_const(plate.faces)[f];
+    plate.marked_edges.push_back({face[0], face[1]});
+  }
+  for (const RemeshResult& level : remesh_levels(plate, std::array<std::size_t, 2>{300, 100})) {
+    const auto is_about_marks = [](const std::string& note) {
+      return note.starts_with("without creases and marked edges");
+    };
+    EXPECT_EQ(std::ranges::count_if(level.report.notes, is_about_marks), 1);
   }
 }
 

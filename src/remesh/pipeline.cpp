@@ -156,9 +156,9 @@ void Pipeline::find_lines() {
     if (may_leave_out_creases() && lines_have_no_room()) {
       plan_.room_for_creases = no_creases;
       find();
-      plan_.notes.emplace_back(fmt::format(
+      add_notes({fmt::format(
           "without creases{}: there are about as many of them as edges of faces of this size",
-          has_marks() ? " and marked edges" : ""));
+          has_marks() ? " and marked edges" : "")});
     }
     append(feature_constraints(plan_.features));
     keep_cone_tips();

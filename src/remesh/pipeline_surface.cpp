@@ -89,7 +89,11 @@ Mesh Pipeline::seamed_surface() const {
 }
 
 void Pipeline::add_notes(const std::vector<std::string>& notes) {
-  plan_.notes.insert(plan_.notes.end(), notes.begin(), notes.end());
+  for (const std::string& note : notes) {
+    // What was found for one target may be found again for another.
+    const bool is_new = std::ranges::find(plan_.notes, note) == plan_.notes.end();
+    if (is_new) plan_.notes.push_back(note);
+  }
 }
 
 void Pipeline::drop_pieces() {
