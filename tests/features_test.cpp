@@ -22,6 +22,7 @@
 #include "made_fields.h"
 #include "made_graph.h"
 #include "measure/crossings.h"
+#include "measure/face_shape.h"
 #include "mesh/border.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
@@ -465,10 +466,7 @@ TEST(Features, OnlyConesHaveTips) {
 std::size_t turned_over(const Mesh& flat) {
   std::size_t count = 0;
   for (std::size_t f = 0; f < flat.faces.size(); ++f) {
-    const auto face = flat.faces[f];
-    count += (flat.positions[face[2]] - flat.positions[face[0]])
-                 .cross(flat.positions[face.back()] - flat.positions[face[1]])
-                 .z() < 0;
+    count += area_vector(flat.faces[f], flat.positions).z() < 0;
   }
   return count;
 }
@@ -533,18 +531,27 @@ TEST(Features, RaggedMarksAreFollowedEvenly) {
   EXPECT_LE(without_some, 1);
 }
 
+/// Of unit sides, so many in a row, from the origin on.
+Mesh field_of_squares(Index side) {
+  Mesh field;
+  const auto at = [&](Index x, Index y) { return y * (side + 1) + x; };
+  for (Index y = 0; y <= side; ++y) {
+    for (Index x = 0; x <= side; ++x) {
+      field.positions.push_back({static_cast<float>(x), static_cast<float>(y), 0});
+      if (x == 0 || y == 0) continue;
+      field.faces.push_back({at(x - 1, y - 1), at(x, y - 1), at(x, y), at(x - 1, y)});
+    }
+  }
+  return field;
+}
+
 /// Stripes much narrower than faces: those that follow them would bite pieces out of the border.
 TEST(Features, MarksGoWhereTheyAreAsManyAsEdges) {
   constexpr Index side = 60;
-  Mesh square;
+  Mesh square = field_of_squares(side);
   const auto at = [](Index x, Index y) { return y * (side + 1) + x; };
-  for (Index y = 0; y <= side; ++y) {
-    for (Index x = 0; x <= side; ++x) {
-      square.positions.push_back({static_cast<float>(x), static_cast<float>(y), 0});
-      if (x == 0 || y == 0) continue;
-      square.faces.push_back({at(x - 1, y - 1), at(x, y - 1), at(x, y), at(x - 1, y)});
-      if (x % 2 == 0 && x < side) square.marked_edges.push_back({at(x, y - 1), at(x, y)});
-    }
+  for (Index x = 2; x < side; x += 2) {
+    for (Index y = 1; y <= side; ++y) square.marked_edges.push_back({at(x, y - 1), at(x, y)});
   }
   RemeshOptions options;
   options.face_count = 200;
@@ -557,15 +564,8 @@ TEST(Features, MarksGoWhereTheyAreAsManyAsEdges) {
 /// The borders of materials, such as the lanes of a running track, much narrower than faces.
 TEST(Features, MarksYieldToSoundFaces) {
   constexpr Index side = 80;
-  Mesh field;
+  Mesh field = field_of_squares(side);
   const auto at = [](Index x, Index y) { return y * (side + 1) + x; };
-  for (Index y = 0; y <= side; ++y) {
-    for (Index x = 0; x <= side; ++x) {
-      field.positions.push_back({static_cast<float>(x), static_cast<float>(y), 0});
-      if (x == 0 || y == 0) continue;
-      field.faces.push_back({at(x - 1, y - 1), at(x, y - 1), at(x, y), at(x - 1, y)});
-    }
-  }
   for (Index lane = 20; lane < 30; ++lane) {  // rings
     const Index last = side - lane;
     for (Index k = lane; k < last; ++k) {

@@ -1,6 +1,5 @@
 #include "picture_command.h"
 
-#include <cctype>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -41,9 +40,7 @@ void picture_command(int argc, char** argv) {
   if (!up.empty()) options.up = Eigen::Vector3f(up.data());
   options.edges = !no_edges;
   options.irregular = !no_dots;
-  std::string extension = std::filesystem::path(output).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (extension != ".png") {
+  if (CLI::detail::to_lower(std::filesystem::path(output).extension().string()) != ".png") {
     throw UsageError("pictures are written as PNG: \"" + output + "\" does not end in .png");
   }
   check_place(output);

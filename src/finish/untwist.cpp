@@ -27,6 +27,11 @@ class Untwisting {
         context_(context) {}
 
   void run() {
+    // Most meshes have none, and need not know which faces are neighbours.
+    const auto may_be_twisted = [&](Index f) {
+      return has_bad_corner(f) || looks_away(extraction_, f, node_normals_);
+    };
+    if (indices_where(mesh_.faces.size(), may_be_twisted, context_).empty()) return;
     around_ = vertex_faces(mesh_, context_);
     std::vector<Index> twisted = twisted_faces();
     const std::size_t faces = mesh_.faces.size();
@@ -81,11 +86,13 @@ class Untwisting {
 
   std::span<const Index> face(Index f) const { return std::as_const(mesh_.faces)[f]; }
 
-  bool is_twisted(Index f) const {
+  bool has_bad_corner(Index f) const {
     constexpr float rounding = 1e-3f;  // of what is written
-    if (mesh_.faces.degree(f) == 4 && scaled_jacobian(face(f), mesh_.positions) <= rounding)
-      return true;
-    return is_turned_over(extraction_, f, around_, node_normals_);
+    return mesh_.faces.degree(f) == 4 && scaled_jacobian(face(f), mesh_.positions) <= rounding;
+  }
+
+  bool is_twisted(Index f) const {
+    return has_bad_corner(f) || is_turned_over(extraction_, f, around_, node_normals_);
   }
 
   std::vector<Index> twisted_faces() const {

@@ -8,6 +8,7 @@
 #include "io/formats.h"
 #include "io/input.h"
 #include "io/output.h"
+#include "io/text.h"
 #include "mesh/join_edges.h"
 #include "mesh/weld.h"
 #include "meshgrain/error.h"
@@ -43,9 +44,7 @@ const Format* find_format(const Predicate& predicate) {
 
 bool has_extension(const std::filesystem::path& path, std::string_view extension) {
   const std::u8string own = path.extension().u8string();
-  return std::equal(
-      own.begin(), own.end(), extension.begin(), extension.end(),
-      [](char8_t a, char b) { return (a >= u8'A' && a <= u8'Z' ? a - u8'A' + u8'a' : a) == b; });
+  return io::is_same_word({reinterpret_cast<const char*>(own.data()), own.size()}, extension);
 }
 
 std::string extensions(bool written_only) {
