@@ -53,10 +53,12 @@ bool find_stops(Chain& chain, const Chords& chords) {
   if (!is_known(chain.vertices.front())) chain.vertices.erase(chain.vertices.begin());
   const std::size_t count = chain.vertices.size();
   if (count < 3) return false;
-  std::vector<double> ways(count);
-  double near = *chords.way(chain.vertices[1], chain.line, 0);
-  for (std::size_t i = 0; i < count; ++i) {
-    near = ways[i] = *chords.way(chain.vertices[i], chain.line, near);
+  std::vector<double> ways;
+  double near = chords.way(chain.vertices[1], chain.line, 0).value_or(0);
+  for (const Index v : chain.vertices) {
+    const auto way = chords.way(v, chain.line, near);
+    if (!way) return false;  // it slides no more, as around a small hole
+    ways.push_back(near = *way);
   }
   if (ways.back() < ways.front()) {
     std::reverse(ways.begin(), ways.end());
