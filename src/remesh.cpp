@@ -63,7 +63,13 @@ void check(const RemeshOptions& options) {
   if (options.graph.nodes == GraphNodes::faces && options.sizing.is_by_value()) {
     throw Error("sizes by value are those of the input's vertices, not of its faces");
   }
-  if (!(options.sizing.grading > 1)) throw Error("the grading of sizes must be larger than 1");
+  check(options.sizing);
+  const CurvatureAlignment& curvature = options.curvature;
+  if (!(curvature.strength >= 0 && curvature.strength <= 1) ||
+      !(curvature.bends >= 0 && curvature.bends <= 1) || !(curvature.hard_degrees >= 0)) {
+    throw Error(
+        "alignment to curvature and to bends must lie between 0 and 1, and no angle below 0");
+  }
   if (options.graph.neighbors == 0) throw Error("points of a cloud need neighbours: one at least");
   if (options.smoothing < 0) throw Error("the number of smoothing iterations must not be negative");
   if (options.graph.nodes == GraphNodes::faces && options.symmetry.any()) {

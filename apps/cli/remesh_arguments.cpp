@@ -6,31 +6,16 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
-#include <map>
 #include <optional>
 #include <string_view>
 
 #include "arguments.h"
 #include "meshgrain/error.h"
 #include "meshgrain/system.h"
+#include "option_names.h"
 
 namespace meshgrain::cli {
 namespace {
-
-template <class T>
-using Names = std::map<std::string, T>;
-
-const Names<Schedule> schedules = {
-    {"blocks", Schedule::blocks}, {"random", Schedule::random_order}, {"jacobi", Schedule::jacobi}};
-const Names<OrientationEnergy> orientation_energies = {{"extrinsic", OrientationEnergy::extrinsic},
-                                                       {"intrinsic", OrientationEnergy::intrinsic},
-                                                       {"convex", OrientationEnergy::convex}};
-const Names<PositionEnergy> position_energies = {{"extrinsic", PositionEnergy::extrinsic},
-                                                 {"intrinsic", PositionEnergy::intrinsic}};
-const Names<GraphNodes> graph_nodes = {{"vertices", GraphNodes::vertices},
-                                       {"faces", GraphNodes::faces}};
-const Names<GraphWeights> graph_weights = {{"uniform", GraphWeights::uniform},
-                                           {"geometric", GraphWeights::geometric}};
 
 /// An option that takes one of several names.
 template <class T>
@@ -39,9 +24,7 @@ CLI::Option* add_choice(CLI::App& app, const std::string& option, T& value, cons
   const auto set = [&value, &names, option](const std::string& name) {
     const auto found = names.find(name);
     if (found == names.end()) {
-      std::string known;
-      for (const auto& entry : names) known += (known.empty() ? "" : ", ") + entry.first;
-      throw CLI::ValidationError(option, "\"" + name + "\" is none of " + known);
+      throw CLI::ValidationError(option, "\"" + name + "\" is none of " + list_of(names));
     }
     value = found->second;
   };
@@ -294,12 +277,12 @@ void add_options(CLI::App& app, Arguments& a) {
   method(app.add_flag_callback(
       "-i,--intrinsic", [&a] { a.energy = "intrinsic"; }, "the same as --energy intrinsic"));
   method(app.add_option("--energy", a.energy, "of both fields: extrinsic (default) or intrinsic")
-             ->check(CLI::IsMember({"extrinsic", "intrinsic"}))
+             ->check(CLI::IsMember(&position_energies))
              ->type_name("ENERGY"));
   app.get_option("--energy")->excludes("-i");
   method(app.add_option("--orientation-energy", a.orientation_energy,
                         "of the orientation field alone: extrinsic, intrinsic or convex")
-             ->check(CLI::IsMember({"extrinsic", "intrinsic", "convex"}))
+             ->check(CLI::IsMember(&orientation_energies))
              ->type_name("ENERGY"));
   method(add_choice(app, "--solver", o.solver.schedule, schedules, "SOLVER",
                     "blocks (parallel Gauss-Seidel, default), random (order) or jacobi"));

@@ -1,14 +1,10 @@
 #include "report.h"
 
 #include "arguments.h"
+#include "option_names.h"
 
 namespace meshgrain::cli {
 namespace {
-
-const char* name(OutputFaces faces) {
-  constexpr const char* names[] = {"quads", "quad-dominant", "triangles", "hexagons"};
-  return names[static_cast<int>(faces)];
-}
 
 Json energies(const std::vector<EnergyRecord>& records) {
   Json list = Json::array();
@@ -99,11 +95,8 @@ Json to_json(const RemeshReport& report) {
 }
 
 Json to_json(const RemeshOptions& o) {
-  constexpr const char* sizings[] = {"uniform", "distance", "value", "density", "paint"};
-  constexpr const char* schedules[] = {"blocks", "random", "jacobi"};
-  constexpr const char* energies[] = {"extrinsic", "intrinsic", "convex"};
   const bool triangular = o.faces == OutputFaces::triangles || o.faces == OutputFaces::hexagons;
-  Json json = {{"result", name(o.faces)},
+  Json json = {{"result", name_of(o.faces, output_faces)},
                {"rosy", o.rosy != 0  ? o.rosy
                         : triangular ? 6
                                      : 4},
@@ -111,19 +104,19 @@ Json to_json(const RemeshOptions& o) {
                {"scale", o.edge_length},
                {"faces", o.face_count},
                {"vertices", o.vertex_count},
-               {"sizing", sizings[static_cast<int>(o.sizing.kind)]},
+               {"sizing", name_of(o.sizing.kind, sizing_kinds)},
                {"sizing_ratio", o.sizing.ratio},
                {"adaptive", o.sizing.adaptive},
                {"grading", o.sizing.grading},
-               {"graph", o.graph.nodes == GraphNodes::faces ? "faces" : "vertices"},
+               {"graph", name_of(o.graph.nodes, graph_nodes)},
                {"coarsen", o.coarsen},
-               {"weights", o.graph.weights == GraphWeights::geometric ? "geometric" : "uniform"},
+               {"weights", name_of(o.graph.weights, graph_weights)},
                {"knn", o.graph.neighbors},
                {"crease_normals", o.graph.crease_degrees},
                {"crease", creases(o.features)},
-               {"orientation_energy", energies[static_cast<int>(o.orientation_energy)]},
-               {"position_energy", energies[static_cast<int>(o.position_energy)]},
-               {"solver", schedules[static_cast<int>(o.solver.schedule)]},
+               {"orientation_energy", name_of(o.orientation_energy, orientation_energies)},
+               {"position_energy", name_of(o.position_energy, position_energies)},
+               {"solver", name_of(o.solver.schedule, schedules)},
                {"sweeps", o.solver.sweeps > 0 ? Json(o.solver.sweeps) : Json("auto")},
                {"multiresolution", o.solver.multiresolution},
                {"seed", o.solver.seed},

@@ -32,11 +32,15 @@ struct Sizing {
   bool is_uniform() const { return kind == Kind::uniform && adaptive == 0; }
 };
 
+/// Throws Error if a number makes no sense: a ratio below 1, an adaptivity that is not between 0
+/// and 1, a grading that is not larger than 1, or a point that is not finite.
+void check(const Sizing& sizing);
+
 /// Relative edge lengths for the nodes of a hierarchy's finest graph: shorter around small turns of
 /// `creases`, whatever the sizing; one value if it is uniform and there are none. The graph is that
 /// of `surface` (Mesh::values are read), whose bending does not count at `creases`, and `face_side`
 /// is the mean side of the faces that are wanted. `point` is relative to the graph's positions.
-/// Throws Error if values are wanted and missing or not positive.
+/// Throws Error if values are wanted and missing or not positive, and as check() does.
 EdgeLength relative_edge_lengths(const Hierarchy& hierarchy, const Mesh& surface,
                                  const FeatureLines& creases, const Sizing& sizing,
                                  double face_side, const Context& context = Context());

@@ -219,7 +219,7 @@ void Cutting::follow(Index from, Index to, const GuideRun& run) {
 void Cutting::cut(const GuideRun& run) {
   const Index from = insert(run.points.front());
   const Index to = run.closed ? from : insert(run.points.back());
-  if (!run.closed && from == to) return;
+  if (!run.closed && from == to) return visit(from, run, 0, true);  // it may cut another guide
   GuideRun ending = run;
   ending.points.front().position = mesh_.position(from);
   ending.points.back().position = mesh_.position(to);

@@ -139,14 +139,22 @@ void multiply_by_distance(std::vector<float>& lengths, const Graph& graph, const
 
 }  // namespace
 
-EdgeLength relative_edge_lengths(const Hierarchy& hierarchy, const Mesh& surface,
-                                 const FeatureLines& creases, const Sizing& sizing,
-                                 double face_side, const Context& context) {
-  if (sizing.is_uniform() && creases.empty()) return EdgeLength(1.0f);
-  if (!(sizing.ratio >= 1)) throw Error("the ratio of edge lengths must be at least 1");
+void check(const Sizing& sizing) {
+  if (!(sizing.ratio >= 1) || !std::isfinite(sizing.ratio)) {
+    throw Error("the ratio of edge lengths must be at least 1");
+  }
   if (!(sizing.adaptive >= 0 && sizing.adaptive <= 1)) {
     throw Error("the adaptivity of sizes must lie between 0 and 1");
   }
+  if (!(sizing.grading > 1)) throw Error("the grading of sizes must be larger than 1");
+  if (!sizing.point.allFinite()) throw Error("the point that sizes grow from is not finite");
+}
+
+EdgeLength relative_edge_lengths(const Hierarchy& hierarchy, const Mesh& surface,
+                                 const FeatureLines& creases, const Sizing& sizing,
+                                 double face_side, const Context& context) {
+  check(sizing);
+  if (sizing.is_uniform() && creases.empty()) return EdgeLength(1.0f);
   const Graph& graph = hierarchy.levels[0];
   std::vector<float> lengths(graph.size(), 1.0f);
   if (sizing.adaptive > 0) {

@@ -12,6 +12,15 @@
 namespace meshgrain {
 namespace {
 
+/// Beyond them corners and neighbours, which are several for each, cannot be told apart by an
+/// Index.
+void check_size(std::size_t count, std::string_view what) {
+  constexpr std::size_t most = std::size_t{1} << 31;
+  if (count < most) return;
+  throw Error(
+      fmt::format("too large: the input has {} {}, and may have {}", count, what, most - 1));
+}
+
 /// One for each vertex, or none at all.
 void check_count(std::size_t count, std::size_t vertices, std::string_view what) {
   if (count == 0 || count == vertices) return;
@@ -22,6 +31,8 @@ void check_count(std::size_t count, std::size_t vertices, std::string_view what)
 
 void check_input(const Mesh& input, const Context& context) {
   const std::size_t vertices = input.positions.size();
+  check_size(vertices, "vertices");
+  check_size(input.faces.size(), "faces");
   check_count(input.normals.size(), vertices, "normals");
   check_count(input.values.size(), vertices, "values");
   const auto is_out_of_range = [&](Index v) { return v >= vertices; };

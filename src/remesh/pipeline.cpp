@@ -367,9 +367,9 @@ void Pipeline::orient() {
       const FieldTransfer transfer(*options_.fields, graph(), frame_, context_);
       plan_.orientation = transfer.orientation();
       if (transfer.is_of_another_surface(context_)) {
-        plan_.notes.emplace_back(
-            "the given fields are of another surface: each value comes from the nearest of its "
-            "vertices, which is far away");
+        add_notes(
+            {"the given fields are of another surface: each value comes from the nearest of "
+             "its vertices, which is far away"});
       }
       return;
     }
@@ -469,12 +469,16 @@ void Pipeline::change_target(const RemeshOptions& options) {
   const bool was_thorough = std::exchange(plan_.is_thorough, false);
   wanted_ = options;
   aim_at(options.faces);
+  may_have_faults_ = true;
   find_lines();
-  choose_lattice();
+  const std::size_t nodes = graph().size();
+  if (choose_lattice()) refine_for_lattice();
+  const bool is_refined = graph().size() != nodes;
   size_faces();
   plan_.keeps_singularities.clear();
   inherent_crossings_.reset();  // what is near to them depends on the size of a face
-  if (room_before == plan_.room_for_creases && !started_elsewhere && !was_thorough) return;
+  if (room_before == plan_.room_for_creases && !started_elsewhere && !was_thorough && !is_refined)
+    return;
   complete_levels();
   orient();
 }

@@ -36,6 +36,8 @@ namespace meshgrain {
 class Pipeline {
  public:
   Pipeline(const Mesh& input, const RemeshOptions& options, const Context& context);
+  Pipeline(const Pipeline&) = delete;
+  Pipeline& operator=(const Pipeline&) = delete;
 
   /// The mesh is of use only if it has fewer faults than these.
   void beat(const FaultCounts& faults) { to_beat_ = faults; }
@@ -143,31 +145,6 @@ class Pipeline {
   RemeshResult result() &&;
 
  private:
-  /// Takes faces away until there are no more than wanted. Returns whether that came to be.
-  bool take_faces_away(Extraction& extraction);
-  /// Adds strips of quads until there are as many faces as wanted. Returns whether that came to be;
-  /// what is left is split then, else as it was.
-  bool add_faces(Extraction& extraction);
-  /// Adds single quads, in the end, to a mesh that has too few faces.
-  void add_single_faces();
-  /// Takes strips of quads away, and single ones for the rest. Returns whether that needs no more
-  /// than `most_single`: what is left is split then, else as it was.
-  bool take_strips(Extraction& extraction, std::size_t most_single);
-  /// Pure quads: `change(quads, count, wanted)` is to bring what will be written from one number of
-  /// faces to the other. If it returns true that is kept, split; else all is as it was.
-  template <typename Change>
-  bool change_quads(Extraction& extraction, const Change& change);
-  void add_notes(const std::vector<std::string>& notes);
-  void clean_border();
-  /// Whether seams along all of the border, which is given, are mostly cracks that no face of the
-  /// size could keep.
-  bool are_cracks(std::span<const std::array<Index, 2>> border) const;
-  void drop_pieces();
-
-  /// Quads with a corner of 180 degrees or more, and faces that look away from the surface.
-  std::vector<Index> inverted_faces() const;
-  /// Inverted faces, and pairs that pass through each other.
-  std::size_t faults() const;
   /// What faces are made from, as far as other faces may be made from something else.
   struct Plan {
     Target target;
@@ -203,6 +180,32 @@ class Pipeline {
     Extraction extraction;
     bool is_split = false;
   };
+
+  /// Takes faces away until there are no more than wanted. Returns whether that came to be.
+  bool take_faces_away(FacesMade& made);
+  /// Adds strips of quads until there are as many faces as wanted. Returns whether that came to be;
+  /// what is left is split then, else as it was.
+  bool add_faces(FacesMade& made);
+  /// Adds single quads, in the end, to a mesh that has too few faces.
+  void add_single_faces();
+  /// Takes strips of quads away, and single ones for the rest. Returns whether that needs no more
+  /// than `most_single`: what is left is split then, else as it was.
+  bool take_strips(FacesMade& made, std::size_t most_single);
+  /// Pure quads: `change(quads, count, wanted)` is to bring what will be written from one number of
+  /// faces to the other. If it returns true that is kept, split; else all is as it was.
+  template <typename Change>
+  bool change_quads(FacesMade& made, const Change& change);
+  void add_notes(const std::vector<std::string>& notes);
+  void clean_border();
+  /// Whether seams along all of the border, which is given, are mostly cracks that no face of the
+  /// size could keep.
+  bool are_cracks(std::span<const std::array<Index, 2>> border) const;
+  void drop_pieces();
+
+  /// Quads with a corner of 180 degrees or more, and faces that look away from the surface.
+  std::vector<Index> inverted_faces() const;
+  /// Inverted faces, and pairs that pass through each other.
+  std::size_t faults() const;
   /// Leaves no faces, but all that others can be made from.
   Attempt take_attempt();
   void put_back(Attempt&& attempt);
@@ -325,7 +328,7 @@ class Pipeline {
   void drop_coarse_levels();
   /// Those again, if they were dropped.
   void complete_levels();
-  PositionField solve_positions();
+  void solve_positions(FacesMade& made) const;
 
   /// What regularity may cost (ExtractOptions): the lattice of pure quads is twice as coarse as
   /// their edges, so that there the same cost bends the surface's grid over a longer way.

@@ -380,7 +380,10 @@ bool Pipeline::try_again(const std::function<bool()>& is_better,
       smooth_faces_unless({});
       untwist_faces();
     }
-    if (is_better()) return true;
+    if (is_better()) {
+      may_have_faults_ = true;  // other ones
+      return true;
+    }
   }
   put_back(std::move(before));
   return false;

@@ -68,14 +68,15 @@ void Pipeline::find_faces() {
   CountSearch search;
   for (int attempt = 0; attempt < attempts; ++attempt) {
     complete_levels();
-    PositionField positions = stage_("position field", [&] {
-      return given ? FieldTransfer(*options_.fields, graph(), frame_, context_).position()
-                   : solve_positions();
+    FacesMade found;
+    stage_("position field", [&] {
+      if (!given) return solve_positions(found);
+      found.position = FieldTransfer(*options_.fields, graph(), frame_, context_).position();
     });
     // Another attempt is unlikely then.
     if (!plan_.target.must_be_met()) drop_coarse_levels();
-    Extraction found = stage_("extraction", [&] { return extract(positions); });
-    const double ratio = plan_.target.count_ratio(found.mesh);
+    found.extraction = stage_("extraction", [&] { return extract(found.position); });
+    const double ratio = plan_.target.count_ratio(found.extraction.mesh);
     const double closing = attempt < 3 ? surplus() : std::max(surplus(), 0.03);
     const bool met = std::abs(ratio - 1) < tolerance ||
                      (ratio > 1 && ratio < 1 + closing && !given && take_faces_away(found)) ||
@@ -83,8 +84,7 @@ void Pipeline::find_faces() {
     const double error = met ? 0 : ratio < 1 ? 1 / ratio - 1 : (ratio - 1) / 5;
     if (error < least_error) {
       least_error = error;
-      made_.extraction = std::move(found);
-      made_.position = std::move(positions);
+      made_ = std::move(found);
     }
     if (given || met) break;
     const bool is_near = ratio < 1 + closing && ratio > 1 - surplus();
@@ -104,26 +104,26 @@ void Pipeline::find_faces() {
   if (!has_room || made_.is_split) return;
   const double ratio = plan_.target.count_ratio(made_.extraction.mesh);
   const double most_to_change = given ? 1 + plan_.target.surplus() : 2;
-  if (ratio > 1 + tolerance && ratio < most_to_change && !take_faces_away(made_.extraction)) {
-    stage_("extraction",
-           [&] { take_strips(made_.extraction, made_.extraction.mesh.faces.corners().size()); });
+  if (ratio > 1 + tolerance && ratio < most_to_change && !take_faces_away(made_)) {
+    stage_("extraction", [&] { take_strips(made_, made_.extraction.mesh.faces.corners().size()); });
   }
   if (ratio < 1 - tolerance && ratio > 1 / most_to_change) add_single_faces();
 }
 
-bool Pipeline::take_faces_away(Extraction& extraction) {
+bool Pipeline::take_faces_away(FacesMade& made) {
   return stage_("extraction", [&] {
+    Extraction& extraction = made.extraction;
     // Single quads beside strips, if these are fewer than the larger ones from before the split.
     const std::size_t larger = plan_.target.faces_to_close(extraction.mesh, strip_tolerance);
-    if (take_strips(extraction, larger)) return true;
+    if (take_strips(made, larger)) return true;
     const std::size_t wanted =
         plan_.target.faces_to_close(extraction.mesh, plan_.target.tolerance());
     return remove_single_faces(extraction, posy_of(options_.faces), wanted, context_) >= wanted;
   });
 }
 
-bool Pipeline::add_faces(Extraction& extraction) {
-  return change_quads(extraction, [&](Extraction& quads, double count, double wanted) {
+bool Pipeline::add_faces(FacesMade& made) {
+  return change_quads(made, [&](Extraction& quads, double count, double wanted) {
     // A row more is much where faces are large for what they cover: another attempt is better.
     if (quads.mesh.faces.size() < few_faces) return false;
     const std::size_t least = rounded_up((1 - strip_tolerance) * wanted - count);
@@ -144,8 +144,8 @@ void Pipeline::add_single_faces() {
   });
 }
 
-bool Pipeline::take_strips(Extraction& extraction, std::size_t most_single) {
-  return change_quads(extraction, [&](Extraction& quads, double count, double wanted) {
+bool Pipeline::take_strips(FacesMade& made, std::size_t most_single) {
+  return change_quads(made, [&](Extraction& quads, double count, double wanted) {
     const std::size_t least = rounded_up(count - (1 + strip_tolerance) * wanted);
     const auto most = static_cast<std::size_t>(count - (1 - strip_tolerance) * wanted);
     const std::size_t gone = remove_strips(quads, least, most, context_);
@@ -157,14 +157,14 @@ bool Pipeline::take_strips(Extraction& extraction, std::size_t most_single) {
 }
 
 template <typename Change>
-bool Pipeline::change_quads(Extraction& extraction, const Change& change) {
+bool Pipeline::change_quads(FacesMade& made, const Change& change) {
   if (options_.faces != OutputFaces::quads) return false;
-  Extraction quads = extraction;
+  Extraction quads = made.extraction;
   if (plan_.lattice_faces == OutputFaces::quads) split(quads);
   const auto count = static_cast<double>(quads.mesh.faces.size());
-  if (!change(quads, count, count / plan_.target.count_ratio(extraction.mesh))) return false;
-  extraction = std::move(quads);
-  made_.is_split = true;
+  if (!change(quads, count, count / plan_.target.count_ratio(made.extraction.mesh))) return false;
+  made.extraction = std::move(quads);
+  made.is_split = true;
   return true;
 }
 
@@ -180,7 +180,7 @@ double Pipeline::count_to_aim_at() const {
   return 1 + (surplus() - plan_.target.tolerance()) / 2;
 }
 
-PositionField Pipeline::solve_positions() {
+void Pipeline::solve_positions(FacesMade& made) const {
   PositionOptions position;
   static_cast<SolverOptions&>(position) = options_.solver;
   position.seed += plan_.other_start;
@@ -192,12 +192,11 @@ PositionField Pipeline::solve_positions() {
   const auto solver = PositionSolver::create(hierarchy_, plan_.orientation, plan_.lengths, position,
                                              constraints, context_);
   while (solver->step(context_)) context_.progress("position field", solver->progress());
-  made_.position_energies = solver->energies();
-  PositionField field = solver->field();
+  made.position_energies = solver->energies();
+  made.position = solver->field();
   // Where these are farther apart than lattice points are, others than they may lie nearer to nodes
   // half way between them.
-  for (const PositionConstraint& sample : at_cuts) field.points[sample.node] = sample.point;
-  return field;
+  for (const PositionConstraint& sample : at_cuts) made.position.points[sample.node] = sample.point;
 }
 
 double Pipeline::cancelling_cost(double regularity) const {

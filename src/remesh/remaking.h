@@ -60,6 +60,10 @@ class Remaking {
  public:
   /// All that it is given must outlive it.
   Remaking(Made& made, const RemeshOptions& options, const Make& make, const Context& context);
+  /// The report has the times of all, also of what came to nothing.
+  ~Remaking() { made_.result.report.stages = std::move(times_); }
+  Remaking(const Remaking&) = delete;
+  Remaking& operator=(const Remaking&) = delete;
 
   /// As they were given, with the number of faces or vertices that was made if none was asked for.
   const RemeshOptions& options() const { return options_; }
@@ -79,9 +83,6 @@ class Remaking {
 
   /// From now on those of other surfaces have creases if there are any now.
   void keep_creases() { keeps_creases_ = !made_.is_without_creases(); }
-
-  /// At the end: the report has the times of all.
-  void report_times() { made_.result.report.stages = std::move(times_); }
 
  private:
   Made& made_;

@@ -11,6 +11,14 @@
 #include "meshgrain/error.h"
 
 namespace meshgrain {
+namespace {
+
+/// The shortest length of an edge, as a share of the mean one.
+double smallest_share(const RemeshOptions& options) {
+  return options.sizing.is_uniform() ? 1 : 1 / options.sizing.ratio;
+}
+
+}  // namespace
 
 int posy_of(OutputFaces faces) {
   return faces == OutputFaces::triangles || faces == OutputFaces::hexagons ? 6 : 4;
@@ -88,21 +96,19 @@ double Target::longest_edge() const {
 double Target::longest_input_edge(const RemeshOptions& options, double area,
                                   double mean_edge) const {
   const double longest = longest_edge() * edge_length(area);
-  const bool for_smallest = splits_only_once(options) && !options.sizing.is_uniform();
-  return std::min(for_smallest ? longest / options.sizing.ratio : longest, 2 * mean_edge);
+  const double smallest = splits_only_once(options) ? smallest_share(options) : 1;
+  return std::min(smallest * longest, 2 * mean_edge);
 }
 
 double Target::sparsest_points(const RemeshOptions& options, double area) const {
-  const double smallest = options.sizing.is_uniform() ? 1 : 1 / options.sizing.ratio;
-  return longest_edge() * edge_length(area) * smallest;
+  return longest_edge() * edge_length(area) * smallest_share(options);
 }
 
 CoarseEdges Target::coarse_edges(const RemeshOptions& options, double area) const {
   // As few vertices as leave the fields as they were; measured. Nor must the surface of pure quads
   // be coarser than they are.
   constexpr double shortest = 0.44;  // of the longest
-  const double smallest = options.sizing.is_uniform() ? 1 : 1 / options.sizing.ratio;
-  const double longest = longest_edge() * edge_length(area) * smallest;
+  const double longest = longest_edge() * edge_length(area) * smallest_share(options);
   return {static_cast<float>(shortest * longest), static_cast<float>(longest)};
 }
 
@@ -110,8 +116,7 @@ CloudDensity Target::density_of_cloud(const RemeshOptions& options) const {
   // What is nearer to each other than neighbours are counts as one side of a thin part.
   constexpr double cell = 0.36;   // of the longest edge
   constexpr double planes = 1.5;  // cells of a plane, by how many squares as wide cover it
-  const double smallest = options.sizing.is_uniform() ? 1 : 1 / options.sizing.ratio;
-  const double longest = cell * longest_edge() * smallest;
+  const double longest = cell * longest_edge() * smallest_share(options);
   if (cells_ > 0) return {.points = planes * cells_ * cell_area_ / (longest * longest)};
   return {.cell = longest * length_};
 }

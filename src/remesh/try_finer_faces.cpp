@@ -87,7 +87,6 @@ void try_finer_faces(Made& made, const RemeshOptions& options, const Make& make,
     // Where faces stay inverted, a simpler surface may serve better than a part of the way.
     if (other.faults.inverted == 0) remaking.keep_if_better(std::move(other));
   }
-  remaking.report_times();
 }
 
 }  // namespace meshgrain

@@ -11,7 +11,6 @@ void try_no_creases(Made& made, const RemeshOptions& options, const Make& make,
       made.has_marks ? "without creases and marked edges: faces of this size that follow them "
                        "would be inverted"
                      : "without creases: faces of this size that follow them would be inverted"));
-  remaking.report_times();
 }
 
 }  // namespace meshgrain

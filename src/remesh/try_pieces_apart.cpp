@@ -11,7 +11,6 @@ void try_pieces_apart(Made& made, const RemeshOptions& options, const Make& make
       made.surface_in_pieces(), remaking.options(), made,
       "left pieces apart that meet where the surface is not manifold: faces of this size with the "
       "same vertices would be inverted or pass through each other"));
-  remaking.report_times();
 }
 
 }  // namespace meshgrain

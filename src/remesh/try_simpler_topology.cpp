@@ -26,7 +26,6 @@ class SimplerTopology {
     // Tunnels alone do not help where pieces crowd each other, nor does it to leave these apart.
     const bool any_meet = !before.cuts.empty();
     if (any_meet && made_.has_serious_faults()) close_tunnels(before, Pieces::are_apart);
-    remaking_.report_times();
   }
 
  private:
