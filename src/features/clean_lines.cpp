@@ -16,8 +16,8 @@ namespace {
 /// The edges sharper than some angle, and those beside them that are not flat.
 class Lines {
  public:
-  Lines(const Mesh& mesh, const RimAndSharpEdges& edges, double degrees)
-      : mesh_(mesh), on_rim_(mesh.positions.size(), 0) {
+  Lines(const Mesh& mesh, const RimAndSharpEdges& edges, double degrees, Beside beside)
+      : mesh_(mesh), beside_(beside), on_rim_(mesh.positions.size(), 0) {
     for (const auto& [a, b] : edges.rim) on_rim_[a] = on_rim_[b] = 1;
     const double flattest = std::cos(degrees * std::numbers::pi / 180);
     std::vector<std::uint8_t> on_line(mesh.positions.size(), 0);
@@ -98,8 +98,10 @@ class Lines {
 
   bool has_clean_end(const Incidence& end, std::span<const Incidence> here) const {
     constexpr std::ptrdiff_t at_corner = 3;
-    constexpr double much_flatter = 1.0 / 3;
-    const double bound = much_flatter * edges_[end.edge].angle;
+    constexpr double much_flatter = 1.0 / 3, much_flatter_facets = 0.46, about_right = 70;
+    const double angle = edges_[end.edge].angle;
+    const bool may_be_facets = beside_ == Beside::facets && angle >= about_right;
+    const double bound = (may_be_facets ? much_flatter_facets : much_flatter) * angle;
     std::ptrdiff_t sharp = 0;
     for (const Incidence& i : here) {
       const Edge& edge = edges_[i.edge];
@@ -122,6 +124,7 @@ class Lines {
   }
 
   const Mesh& mesh_;
+  Beside beside_;
   std::vector<Edge> edges_;
   std::vector<Incidence> at_;  // sorted
   std::vector<std::uint8_t> on_rim_;
@@ -129,8 +132,9 @@ class Lines {
 
 }  // namespace
 
-double share_of_clean_lines(const Mesh& triangles, const RimAndSharpEdges& edges, double degrees) {
-  return Lines(triangles, edges, degrees).clean_share();
+double share_of_clean_lines(const Mesh& triangles, const RimAndSharpEdges& edges, double degrees,
+                            Beside beside) {
+  return Lines(triangles, edges, degrees, beside).clean_share();
 }
 
 }  // namespace meshgrain

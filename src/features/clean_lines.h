@@ -5,10 +5,17 @@
 
 namespace meshgrain {
 
+/// What may meet a clean line that bends by a right angle.
+enum class Beside {
+  flat,    ///< Edges that are much flatter, as they must be anywhere.
+  facets,  ///< Those between the sides of a prism of ten or more, as well.
+};
+
 /// Which share of the length of all edges sharper than `degrees` lies on clean lines. There an edge
 /// goes on at both ends in another, as sharp and about as straight, or ends at a corner or at the
 /// rim; and all others that meet it are much flatter. `edges` are all that are not flat. Splitting
 /// edges or faces does not change the share.
-double share_of_clean_lines(const Mesh& triangles, const RimAndSharpEdges& edges, double degrees);
+double share_of_clean_lines(const Mesh& triangles, const RimAndSharpEdges& edges, double degrees,
+                            Beside beside = Beside::flat);
 
 }  // namespace meshgrain
