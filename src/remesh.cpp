@@ -14,6 +14,7 @@
 #include "remesh/pipeline.h"
 #include "remesh/target.h"
 #include "remesh/try_finer_faces.h"
+#include "remesh/try_joined_seams.h"
 #include "remesh/try_no_creases.h"
 #include "remesh/try_pieces_apart.h"
 #include "remesh/try_simpler_topology.h"
@@ -131,21 +132,17 @@ Made make(Mesh input, const RemeshOptions& options, const std::optional<Wanted>&
   prepare(pipeline);
   std::vector<std::string> notes = pipeline.report().notes;
   make_mesh(pipeline);
-  Faults faults = pipeline.find_faults();
-  const double side = pipeline.face_side();
-  const bool has_marks = pipeline.has_marks() || pipeline.is_sharpened();
-  Cuts cuts = pipeline.cuts();
-  const double room_for_creases = pipeline.room_for_creases();
-  const bool follows_creases = faults.inverted > 0 && pipeline.follows_creases();
-  return {std::move(pipeline).result(),
-          std::move(faults),
-          side,
-          std::move(notes),
-          std::move(seamed),
-          has_marks,
-          std::move(cuts),
-          room_for_creases,
-          follows_creases};
+  Made made{.faults = pipeline.find_faults(),
+            .side = pipeline.face_side(),
+            .notes = std::move(notes),
+            .seamed = std::move(seamed),
+            .has_marks = pipeline.has_marks() || pipeline.is_sharpened(),
+            .was_marked = pipeline.was_marked(),
+            .cuts = pipeline.cuts(),
+            .room_for_creases = pipeline.room_for_creases()};
+  made.follows_creases = made.faults.inverted > 0 && pipeline.follows_creases();
+  made.result = std::move(pipeline).result();
+  return made;
 }
 
 /// One half of a mesh, whose tunnels must be those of the other, and its border where they meet.
@@ -174,6 +171,7 @@ void attempt(const Way& way, Made& made, const RemeshOptions& options, const Con
 RemeshResult remesh_whole(Mesh input, const RemeshOptions& options, const Context& context) {
   Made made = make(std::move(input), options, std::nullopt, context);
   if (options.retries) {
+    attempt(try_joined_seams, made, options, context);
     attempt(try_no_creases, made, options, context);
     attempt(try_finer_faces, made, options, context);
     attempt(try_simpler_topology, made, options, context);

@@ -1,5 +1,6 @@
 #include "meshgrain/features.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -125,6 +126,26 @@ TEST(Features, CreasesAreFoundAmongCoarseFacets) {
     ASSERT_EQ(lines.size(), 2u) << longest;
     EXPECT_TRUE(lines.is_closed(0) && lines.is_closed(1));
     for (const Vec3& p : lines.positions) EXPECT_TRUE(p.z() == 0 || p.z() == 20);
+  }
+}
+
+/// Of ten sides and more the facets count as round. They bend by up to 36 degrees, which is much
+/// beside the right angles at its ends.
+TEST(Features, CreasesOfCoarsePrismsAreFound) {
+  for (const Index sides : {10, 11, 12, 13}) {
+    for (const float height : {0.3f, 1.5f, 6.0f}) {
+      SCOPED_TRACE(fmt::format("{} sides, {} high", sides, height));
+      const FeatureLines lines = find_features(prism(sides, height), {}, 0.1);
+      double length = 0;  // of what goes around, at the ends
+      for (std::size_t line = 0; line < lines.size(); ++line) {
+        for (Index k = lines.begin(line) + 1; k < lines.end(line); ++k) {
+          const Vec3 along = lines.positions[k] - lines.positions[k - 1];
+          if (along.z() == 0) length += along.norm();
+        }
+      }
+      const double around = 2 * sides * std::sin(std::numbers::pi / sides);
+      EXPECT_NEAR(length, 2 * around, 1e-3);
+    }
   }
 }
 

@@ -131,19 +131,44 @@ TEST(FreePoints, LieInTheMiddleOfLargeTriangles) {
 }
 
 /// A sphere of four triangles, with two edges between the same two vertices: around a thin neck.
-TEST(LinkCondition, OneOfTwoEdgesBetweenTheSameVerticesStays) {
+/// Two triangles are all that is around each of the other two.
+struct Neck {
+  PolygonMap map;
+  Index first, second;  // between the same vertices
+};
+Neck neck() {
   const std::vector<Vec3> positions{{0, 0, 0}, {2, 0, 0}, {1, 1, 0}, {1, -1, 0}};
   const std::vector<Vec3> normals(positions.size(), Vec3::UnitZ());
   const std::vector<std::array<Index, 2>> edges{{0, 2}, {2, 1}, {1, 3}, {3, 0}};
-  PolygonMap map(positions, normals, edges);
-  const Index first = map.add_edge(map.halfedge(0, 2), map.halfedge(1, 3));
+  Neck neck{PolygonMap(positions, normals, edges), 0, 0};
+  PolygonMap& map = neck.map;
+  neck.first = map.add_edge(map.halfedge(0, 2), map.halfedge(1, 3));
+  neck.second = map.add_edge(map.halfedge(0, 3), map.halfedge(1, 2));
+  return neck;
+}
+
+TEST(LinkCondition, OneOfTwoEdgesBetweenTheSameVerticesStays) {
+  const auto [map, first, second] = neck();
   LinkCondition link;
-  const Index second = map.add_edge(map.halfedge(0, 3), map.halfedge(1, 2));
   const std::vector<std::uint8_t> holes(map.halfedges(), 0);
   for (const Index h : {first, second}) {
     ASSERT_EQ(map.degree(h), 3u);
     EXPECT_FALSE(link.holds(map, holes, h));
     EXPECT_FALSE(link.holds(map, holes, PolygonMap::twin(h)));
+  }
+}
+
+/// If it went, the two triangles beside it would have lost the same edge.
+TEST(LinkCondition, AnEdgeWhoseTrianglesHaveOneApexStays) {
+  const PolygonMap map = neck().map;
+  LinkCondition link;
+  const std::vector<std::uint8_t> holes(map.halfedges(), 0);
+  for (const Index v : {0, 1}) {
+    for (const Index w : {2, 3}) {
+      ASSERT_EQ(map.valence(w), 2u);
+      EXPECT_FALSE(link.holds(map, holes, map.halfedge(w, v)));
+      EXPECT_FALSE(link.holds(map, holes, map.halfedge(v, w)));
+    }
   }
 }
 

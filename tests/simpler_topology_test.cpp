@@ -120,5 +120,58 @@ TEST(SimplerTopology, SlitsStayWhereThereIsRoom) {
   EXPECT_EQ(mesh_statistics(result.mesh).inverted_quads, 0u);
 }
 
+/// A closed surface as programs write it that keep several texture coordinates at a vertex.
+Mesh cut_into_charts(const Mesh& whole) {
+  Mesh charts;
+  std::map<std::pair<int, Index>, Index> vertex;
+  for (std::size_t f = 0; f < whole.faces.size(); ++f) {
+    const auto face = whole.faces[f];
+    Vec3 middle = Vec3::Zero();
+    for (const Index v : face) middle += whole.positions[v];
+    const int chart = (middle.x() > 0) + 2 * (middle.y() > 0) + 4 * (middle.z() > 0);
+    std::vector<Index> corners;
+    for (const Index v : face) {
+      const auto [it, is_new] =
+          vertex.try_emplace({chart, v}, static_cast<Index>(charts.positions.size()));
+      if (is_new) charts.positions.push_back(whole.positions[v]);
+      corners.push_back(it->second);
+    }
+    charts.faces.push_back(corners);
+  }
+  return charts;
+}
+
+TEST(SimplerTopology, ChartsOfAClosedSurfaceAreJoinedAtAnyCount) {
+  const Mesh whole = sample_shape("blob", 0.1);
+  const Mesh charts = cut_into_charts(whole);
+  ASSERT_GT(mesh_statistics(charts).boundary_loops, 4u);
+  RemeshOptions options;
+  for (const std::size_t count : {300, 1000, 3000}) {
+    SCOPED_TRACE(count);
+    options.face_count = count;
+    const RemeshResult result = remesh(charts, options);
+    const MeshStatistics now = mesh_statistics(result.mesh);
+    made::expect_same_topology(now, mesh_statistics(whole));
+    EXPECT_GT(now.jacobian_p01, 0.7);
+    EXPECT_TRUE(made::has_note(result, "merged "));
+  }
+}
+
+/// The sine of a full turn is not that of none.
+TEST(SimplerTopology, SeamsAreSeenThroughRounding) {
+  Mesh charts = cut_into_charts(sample_shape("sphere", 0.2));
+  bool any = false;
+  for (std::size_t v = 0; v < charts.positions.size(); v += 2) {
+    for (float& x : charts.positions[v]) {
+      any = any || x == 0;
+      if (x == 0) x = -2.4e-16f;
+    }
+  }
+  ASSERT_TRUE(any);
+  RemeshOptions options;
+  options.face_count = 1000;
+  EXPECT_EQ(mesh_statistics(remesh(charts, options).mesh).boundary_loops, 0u);
+}
+
 }  // namespace
 }  // namespace meshgrain

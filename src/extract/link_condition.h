@@ -19,14 +19,20 @@ class LinkCondition {
       stamp_[v] = round_;
       return false;
     });
-    // Around a narrow neck there may be another edge between the two, which would become a loop.
+    // Around a narrow neck there may be another edge between the two, which would become a loop;
+    // or both triangles beside it may have one apex, and be all that is around one of the two.
     const Index origin = map.origin(h);
     std::size_t between = 0;
+    Index apex = no_index;
+    bool have_one_apex = false;
     const Star b = visit(map, holes, t, [&](Index v) {
       between += v == origin;
-      return stamp_[v] == round_;
+      const bool is_common = stamp_[v] == round_;
+      have_one_apex = have_one_apex || (is_common && v == apex);
+      if (is_common) apex = v;
+      return is_common;
     });
-    if (between > 1) return false;
+    if (between > 1 || have_one_apex) return false;
     if (b.common != (rim_edge ? 1u : 2u)) return false;
     if (a.rim && b.rim && !rim_edge) return false;
     return a.valence + a.rim > 3 || b.valence + b.rim > 3;

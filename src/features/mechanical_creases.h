@@ -33,8 +33,8 @@ enum class SurfaceKind {
                     ///< its sharp edges make clean lines.
   rounded_part,     ///< There is much of anything between its creases and what is nearly flat, but
                     ///< many sharp edges lie on clean lines, and a good part of them stick out: the
-                 ///< seams where bodies of a sculpture meet are clean, too, but hollow. Or nearly
-                 ///< all do once the facets of a coarse round side may meet them.
+  ///< seams where bodies of a sculpture meet are clean, too, but hollow. Or nearly
+  ///< all do once the facets of a coarse round side may meet them.
   sculpture,  ///< Or a scan: sharp edges are detail or noise.
 };
 SurfaceKind kind_of_surface(const Mesh& triangles, const RimAndSharpEdges& edges,

@@ -98,7 +98,10 @@ Mesh read_mesh(const std::filesystem::path& path, const ReadOptions& options,
     input.fail("only PLY and OBJ files have colours at their vertices");
   }
   normalize(mesh.normals);
-  if (options.weld) weld(mesh);
+  if (options.weld) {
+    drop_rounding(mesh, context);
+    weld(mesh);
+  }
   context.progress("read", 1);
   return mesh;
 }

@@ -61,8 +61,10 @@ class Reader {
   }
 
   /// Before edges are marked: the two faces of a hard edge may have vertices of their own there.
-  void weld_faces() {
-    if (!mesh_.faces.empty()) weld(mesh_);
+  void weld_faces(const Context& context) {
+    if (mesh_.faces.empty()) return;
+    drop_rounding(mesh_, context);
+    weld(mesh_);
   }
 
   void mark_material_borders() {
@@ -259,7 +261,7 @@ Mesh read_obj(const Input& input) {
   Reader reader(input);
   reader.run();
   reader.refuse_free_form();
-  if (input.options().weld) reader.weld_faces();
+  if (input.options().weld) reader.weld_faces(input.context());
   reader.mark_material_borders();
   reader.mark_hard_edges();
   return reader.take();

@@ -167,21 +167,25 @@ std::size_t Caps::run(const Context& context) {
   const std::vector<Index> caps = indices_where(mesh_.faces.size(), is_cap, context);
   if (caps.empty()) return 0;
   note_faces(caps, context);
-  std::queue<Index> open;
-  for (const Index f : caps) open.push(f);
+  // The longest edge first: of those on it that are caps themselves one is beyond the next.
+  std::priority_queue<std::pair<double, Index>> open;
+  const auto add = [&](Index f) {
+    const Shape here = shape(face(f));
+    if (here.is_cap) open.push({here.longest, f});
+  };
+  std::ranges::for_each(caps, add);
   std::size_t mended = 0, dropped = 0;
-  // Where one edge passes through many vertices, each turn leaves a shorter one.
   for (std::size_t left = 16 * caps.size(); left > 0 && !open.empty(); --left) {
-    const Index f = open.front();
+    const auto [longest, f] = open.top();
     open.pop();
     if (is_gone(f)) continue;
     const Shape here = shape(face(f));
-    if (!here.is_cap) continue;
+    if (!here.is_cap || here.longest != longest) continue;
     const auto faces = beside(face(f)[here.k], face(f)[(here.k + 1) % 3]);
     const std::vector<Index> both(faces.begin(), faces.end());
     if (turn(f, here.k)) {
       ++mended;
-      for (const Index g : both) open.push(g);
+      std::ranges::for_each(both, add);
     } else if (drop(f, here.k)) {
       ++mended;
       ++dropped;

@@ -1,8 +1,11 @@
 #include "mesh/weld.h"
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <utility>
+
+#include "util/bounding_box.h"
 
 namespace meshgrain {
 namespace {
@@ -75,6 +78,16 @@ std::size_t weld(Mesh& mesh) {
   for (Index& corner : mesh.faces.corners()) corner = target[corner];
   for (auto& edge : mesh.marked_edges) edge = {target[edge[0]], target[edge[1]]};
   return before - after;
+}
+
+void drop_rounding(Mesh& mesh, const Context& context) {
+  if (mesh.positions.empty()) return;
+  const float least = 1e-9f * bounding_box(mesh.positions, context).diagonal().norm();
+  for (Vec3& p : mesh.positions) {
+    for (float& x : p) {
+      if (std::abs(x) < least) x = 0;
+    }
+  }
 }
 
 bool is_torn(const Mesh& mesh) {

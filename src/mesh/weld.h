@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
 
 namespace meshgrain {
@@ -12,6 +13,10 @@ namespace meshgrain {
 /// normals. Faces are kept, even those that become degenerate. Returns the number of vertices that
 /// were merged into others.
 std::size_t weld(Mesh& mesh);
+
+/// Sets coordinates to zero that are nothing but rounding, less than a billionth of the mesh's
+/// size: the sine of a full turn is not that of none.
+void drop_rounding(Mesh& mesh, const Context& context);
 
 /// Whether the faces of a mesh hardly share vertices although they meet, as some programs write
 /// them: fewer than half of its vertices have a place of their own. (Seams leave more than half,

@@ -158,7 +158,7 @@ void Pipeline::find_lines() {
       find();
       add_notes({fmt::format(
           "without creases{}: there are about as many of them as edges of faces of this size",
-          has_marks() ? " and marked edges" : "")});
+          was_marked() ? " and marked edges" : "")});
     }
     append(feature_constraints(plan_.features));
     keep_cone_tips();

@@ -120,8 +120,10 @@ class Pipeline {
   Faults find_faults();
   /// Of the surface that was remeshed.
   const Cuts& cuts() const { return cuts_; }
-  /// Whether the input has marked edges.
+  /// Whether the surface has marked edges, besides those of creases that were found in it.
   bool has_marks() const;
+  /// Whether the input has.
+  bool was_marked() const { return was_marked_; }
   bool is_sharpened() const { return is_sharpened_; }
   /// The mean side of a face, in input units.
   double face_side() const { return plan_.target.face_side(area_) * frame_.scale; }
@@ -349,6 +351,7 @@ class Pipeline {
   double regularity_;               // that is aimed at
   std::size_t clean_vertices_ = 0;  // of the input, without what clean_up() takes out
   bool is_in_order_ = false;        // the surface, since it was read
+  bool was_marked_ = false;         // the input
   bool is_sharpened_ = false;
   bool is_coarsened_ = false;  // its creases are marked since then, and
   bool had_marks_ = false;     // others were before

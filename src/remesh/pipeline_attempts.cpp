@@ -274,8 +274,8 @@ bool Pipeline::try_without_creases(const Flaws& before) {
     std::erase_if(notes, [](const auto& note) { return note.starts_with("without some creases"); });
     notes.emplace_back(fmt::format(
         "without {}creases{}: faces of this size that follow them would {}pass through each other",
-        room == no_creases ? "" : "some ", has_marks() ? " and marked edges" : "",
-        has_marks() ? "be inverted or " : ""));
+        room == no_creases ? "" : "some ", was_marked() ? " and marked edges" : "",
+        was_marked() ? "be inverted or " : ""));
     return true;
   }
   return false;

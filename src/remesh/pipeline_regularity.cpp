@@ -21,10 +21,11 @@ struct Slack {
 bool are_no_worse(const MeshStatistics& now, const MeshStatistics& before, bool is_worth_shape,
                   const Slack& slack = {}) {
   const auto singularities = static_cast<double>(now.singularities);
-  const bool may_cost =
-      is_worth_shape &&
-      2 * singularities <= slack.singularities * static_cast<double>(before.singularities);
-  const double each = may_cost ? 1.2 : 1.03, both = may_cost ? 1.3 : 1;
+  const auto become_fewer = [&](double times) {
+    return times * singularities <= slack.singularities * static_cast<double>(before.singularities);
+  };
+  const bool may_cost = is_worth_shape && become_fewer(2);
+  const double each = !may_cost ? 1.03 : become_fewer(5) ? 1.5 : 1.2, both = may_cost ? 1.3 : 1;
   const double area = now.area_sigma / slack.area_sigma;
   const double angle = now.angle_sigma / slack.angle_sigma;
   return area <= each * before.area_sigma && angle <= each * before.angle_sigma &&

@@ -56,10 +56,12 @@ void Pipeline::clean_up(Mesh input) {
     add_notes(describe(oriented));
     if (!is_cloud_ && oriented.may_have_border) clean_border();
     drop_pieces();
+    was_marked_ = !surface_.marked_edges.empty();
   });
 }
 
 void Pipeline::clean_border() {
+  if (!options_.lock_borders) drop_rounding(surface_, context_);  // which else keeps seams apart
   auto border = border_edges(surface_, context_);
   add_notes(contract_border_of(surface_, border, context_));
   const SeamReport seams = find_seams(surface_, border);

@@ -65,15 +65,17 @@ Made Remaking::made_without_creases(Mesh surface, const Made& before, const std:
   return other;
 }
 
-void Remaking::keep_if_better(Made other) {
+bool Remaking::keep_if_better(Made other) {
   // Faces of different pieces that pass through each other are no faults where these were left
   // apart, but they are there.
   const auto crossings = [&](const Made& of) {
     return find_crossings(of.result.mesh, context_).size();
   };
   const bool are_apart = other.cuts.empty() && !made_.cuts.empty();
-  if (are_apart && crossings(other) > crossings(made_)) return;
-  if (other.faults.are_clearly_fewer_than(made_.faults)) made_ = std::move(other);
+  if (are_apart && crossings(other) > crossings(made_)) return false;
+  if (!other.faults.are_clearly_fewer_than(made_.faults)) return false;
+  made_ = std::move(other);
+  return true;
 }
 
 }  // namespace meshgrain

@@ -18,13 +18,14 @@ namespace meshgrain {
 struct Made {
   RemeshResult result;
   Faults faults;
-  double side;                     // of a face, in the mean
+  double side = 0;                 // of a face, in the mean
   std::vector<std::string> notes;  // of the input, before there were faces
   Mesh seamed;                     // the input, if seams may be joined; else empty
-  bool has_marks;                  // besides those of creases that were found
+  bool has_marks = false;          // besides those of creases that were found
+  bool was_marked = false;         // the input
   Cuts cuts;                       // of the surface that was remeshed
-  double room_for_creases;         // those with less were left out (see Pipeline)
-  bool follows_creases;            // that nobody asked for; only told if faces are inverted
+  double room_for_creases = 0;     // those with less were left out (see Pipeline)
+  bool follows_creases = false;    // that nobody asked for; only told if faces are inverted
 
   /// What was remeshed, to be so once more: joined again where it was cut, and with the marks that
   /// it came with alone.
@@ -34,9 +35,9 @@ struct Made {
   bool is_without_creases() const { return std::isinf(room_for_creases); }
   /// Whether so many faces pass through each other that little can be seen of what the surface is:
   /// fewer are no reason to change it.
-  bool has_many_crossings() const {
-    constexpr std::size_t many = 10;  // one in so many faces
-    return faults.crossings > result.mesh.faces.size() / many;
+  bool has_many_crossings() const { return are_many(faults.crossings); }
+  bool are_many(std::size_t crossings) const {
+    return crossings > result.mesh.faces.size() / Flaws::many;
   }
   bool has_serious_faults() const { return faults.inverted > 0 || has_many_crossings(); }
 };
@@ -78,8 +79,8 @@ class Remaking {
   /// The same with no creases, nor marked edges.
   Made made_without_creases(Mesh surface, const Made& before, const std::string& note);
 
-  /// If it has clearly fewer faults.
-  void keep_if_better(Made other);
+  /// If it has clearly fewer faults. Returns whether it has.
+  bool keep_if_better(Made other);
 
   /// From now on those of other surfaces have creases if there are any now.
   void keep_creases() { keeps_creases_ = !made_.is_without_creases(); }

@@ -8,9 +8,9 @@ void try_no_creases(Made& made, const RemeshOptions& options, const Make& make,
   Remaking remaking(made, options, make, context);
   remaking.keep_if_better(remaking.made_without_creases(
       made.surface(), made,
-      made.has_marks ? "without creases and marked edges: faces of this size that follow them "
-                       "would be inverted"
-                     : "without creases: faces of this size that follow them would be inverted"));
+      made.was_marked ? "without creases and marked edges: faces of this size that follow them "
+                        "would be inverted"
+                      : "without creases: faces of this size that follow them would be inverted"));
 }
 
 }  // namespace meshgrain

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "mesh/weld.h"
 #include "meshgrain/statistics.h"
+#include "remesh/try_joined_seams.h"
 #include "tunnels/close_tunnels.h"
 
 namespace meshgrain {
@@ -36,11 +36,7 @@ class SimplerTopology {
   void join_seams(Mesh surface, Made& before) {
     // The two sides of a seam mostly cross a little: that alone is no reason to join them.
     if (before.faults.inverted == 0) return;
-    const std::size_t merged = remaking_.stage()("join seams", [&] { return weld(surface); });
-    before = made_of(std::move(surface), before,
-                     fmt::format("merged {} vertices along seams: faces of this size beside these "
-                                 "would be inverted or pass through each other",
-                                 merged));
+    before = made_without_seams(remaking_, std::move(surface), before);
     remaking_.keep_if_better(before);
   }
 
@@ -82,7 +78,7 @@ class SimplerTopology {
     remaking_.keep_if_better(std::move(other));
     if (!creases_may_go || made_.faults.inverted == 0) return;
     const char* also =
-        before.has_marks ? ", without creases and marked edges" : ", without creases";
+        before.was_marked ? ", without creases and marked edges" : ", without creases";
     remaking_.keep_if_better(
         remaking_.made_without_creases(std::move(surface), before, note(also)));
   }
