@@ -15,6 +15,7 @@
 #include "remesh/target.h"
 #include "remesh/try_finer_faces.h"
 #include "remesh/try_joined_seams.h"
+#include "remesh/try_more_faces.h"
 #include "remesh/try_no_creases.h"
 #include "remesh/try_pieces_apart.h"
 #include "remesh/try_simpler_topology.h"
@@ -176,6 +177,7 @@ RemeshResult remesh_whole(Mesh input, const RemeshOptions& options, const Contex
     attempt(try_finer_faces, made, options, context);
     attempt(try_simpler_topology, made, options, context);
     attempt(try_pieces_apart, made, options, context);
+    attempt(try_more_faces, made, options, context);
   }
   note_faults(made.result, made.faults);
   return std::move(made.result);

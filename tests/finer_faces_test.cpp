@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <span>
 #include <string>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "has_note.h"
+#include "made_volume.h"
 #include "measure/crossings.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
@@ -165,6 +167,39 @@ TEST(FinerFaces, ShapesElsewhereAreNoPriceForFewerCrossings) {
   EXPECT_EQ(s.inverted_quads, 0u);
   EXPECT_NEAR(static_cast<double>(s.faces), 600, 6);
   EXPECT_LT(s.area_max, 4);
+}
+
+/// Struts around the edges of cubes, as of a printed lattice.
+Mesh struts(int cubes, double radius, int cells) {
+  const auto distance = [&](const Eigen::Vector3d& p) {
+    const double width = 1.6 / cubes;
+    std::array<double, 3> away;  // from the nearest of the planes that the struts lie in
+    for (int k = 0; k < 3; ++k) {
+      const double x = std::clamp(std::round((p[k] + 0.8) / width), 0.0, double(cubes));
+      away[k] = std::abs(p[k] + 0.8 - x * width);
+    }
+    std::ranges::sort(away);
+    const bool is_beyond = p.cwiseAbs().maxCoeff() > 0.8;
+    return is_beyond ? std::hypot(std::hypot(away[0], away[1]), away[2]) - radius
+                     : std::hypot(away[0], away[1]) - radius;
+  };
+  return made::sampled_on_grid(distance, cells);
+}
+
+/// Two faces around each strut are none that can be valid.
+TEST(MoreFaces, AreMadeWhereSoFewWouldBeInverted) {
+  const Mesh input = struts(1, 0.1, 30);
+  RemeshOptions options;
+  options.face_count = 50;
+  options.features.creases = Creases::none;
+  const RemeshResult result = remesh(input, options);
+  const MeshStatistics now = mesh_statistics(result.mesh);
+  EXPECT_EQ(now.inverted_quads, 0u);
+  EXPECT_GT(now.faces, 2 * options.face_count - 10);
+  EXPECT_TRUE(made::has_note(result, "made more faces"));
+  made::expect_same_topology(now, mesh_statistics(input));
+  options.retries = false;
+  EXPECT_GT(mesh_statistics(remesh(input, options).mesh).inverted_quads, 0u);
 }
 
 }  // namespace
