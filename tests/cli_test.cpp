@@ -408,9 +408,13 @@ TEST_F(Cli, NotesTellOfSeams) {
     for (Index& v : face) v += count;
   }
   write_mesh(folder_ / "in.obj", halves);
-  const Run plain = run("in.obj -o out.obj -f 300");
-  EXPECT_NE(plain.err.find("border edges lie on each other"), std::string::npos) << plain.err;
+  const Run kept = run("in.obj -o out.obj -f 300 --no-retries");
+  EXPECT_NE(kept.err.find("border edges lie on each other"), std::string::npos) << kept.err;
   EXPECT_EQ(mesh_statistics(read_mesh(folder_ / "out.obj")).components, 2u);
+  // The two would pass through each other.
+  const Run joined = run("in.obj -o out.obj -f 300");
+  EXPECT_NE(joined.err.find("along seams: faces of this size"), std::string::npos) << joined.err;
+  EXPECT_EQ(mesh_statistics(read_mesh(folder_ / "out.obj")).euler, 2);
   const Run welded = run("in.obj -o out.obj -f 300 --weld");
   EXPECT_EQ(welded.err, "");
   EXPECT_EQ(mesh_statistics(read_mesh(folder_ / "out.obj")).euler, 2);
