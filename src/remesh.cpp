@@ -133,7 +133,8 @@ Made make(Mesh input, const RemeshOptions& options, const std::optional<Wanted>&
   prepare(pipeline);
   std::vector<std::string> notes = pipeline.report().notes;
   make_mesh(pipeline);
-  Made made{.faults = pipeline.find_faults(),
+  Made made{.result = {},  // comes last
+            .faults = pipeline.find_faults(),
             .side = pipeline.face_side(),
             .notes = std::move(notes),
             .seamed = std::move(seamed),

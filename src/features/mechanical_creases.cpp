@@ -6,6 +6,7 @@
 
 #include "features/clean_lines.h"
 #include "features/fading_creases.h"
+#include "measure/face_shape.h"
 #include "util/sum.h"
 
 namespace meshgrain {
@@ -49,9 +50,7 @@ std::vector<std::uint8_t> above_best_threshold(const Mesh& mesh, std::span<const
 double share_that_sticks_out(const Mesh& mesh, const Context& context) {
   const double cosine = sharp_cosine(sharp_degrees);
   const auto normal = [&](Index f) -> Vec3 {
-    const Vec3& a = mesh.positions[mesh.faces[f][0]];
-    const Vec3 b = mesh.positions[mesh.faces[f][1]] - a, c = mesh.positions[mesh.faces[f][2]] - a;
-    return b.cross(c).stableNormalized();
+    return area_vector(mesh.faces[f], mesh.positions).stableNormalized();
   };
   const auto is_sharp = [&](const InnerEdge& edge) {
     return normal(edge.left).dot(normal(edge.right)) < cosine;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <unordered_set>
 
+#include "measure/face_shape.h"
 #include "util/triangle.h"
 
 namespace meshgrain {
@@ -37,11 +38,7 @@ Vec3 Projector::nearest_around(const Vec3& p, Index vertex, Index& nearest_corne
 Vec3 Projector::normal(Index vertex) const {
   if (surface_.is_point_cloud()) return graph_.normals[vertex];
   Vec3 sum = Vec3::Zero();
-  for (const Index f : around_[vertex]) {
-    const auto face = surface_.faces[f];
-    sum += (surface_.positions[face[1]] - surface_.positions[face[0]])
-               .cross(surface_.positions[face[2]] - surface_.positions[face[0]]);
-  }
+  for (const Index f : around_[vertex]) sum += area_vector(surface_.faces[f], surface_.positions);
   const float length = sum.norm();
   return length > 0 ? Vec3(sum / length) : Vec3(Vec3::Zero());
 }

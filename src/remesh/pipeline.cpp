@@ -48,6 +48,7 @@ Pipeline::Pipeline(const Mesh& input, const RemeshOptions& options, const Contex
 
 void Pipeline::build_graph() {
   hierarchy_ = {};
+  has_all_levels_ = false;
   hierarchy_.levels.push_back(stage_("graph", [&] {
     cut_surface();
     if (is_cloud_) return graph_of_cloud();
@@ -57,6 +58,8 @@ void Pipeline::build_graph() {
     graph_of_vertices_ = std::move(of_vertices);
     return meshgrain::build_graph(surface_, options_.graph, context_);
   }));
+  area_ = 0;
+  for (const float a : graph().areas) area_ += a;
   result_.report.nodes = graph().size();
   result_.report.edges = graph().neighbors.size() / 2;
 }
@@ -97,11 +100,12 @@ void Pipeline::join_cuts() {
 void Pipeline::build_levels() {
   stage_("hierarchy",
          [&] { hierarchy_ = build_hierarchy(std::move(hierarchy_.levels[0]), context_); });
+  has_all_levels_ = true;
   result_.report.levels = hierarchy_.levels.size();
 }
 
 void Pipeline::complete_levels() {
-  if (hierarchy_.levels.size() < result_.report.levels) build_levels();
+  if (!has_all_levels_) build_levels();
 }
 
 void Pipeline::drop_coarse_levels() {
@@ -109,6 +113,7 @@ void Pipeline::drop_coarse_levels() {
   hierarchy_.parents = {};
   hierarchy_.children = {};
   hierarchy_.colorings = {};
+  has_all_levels_ = false;
 }
 
 void Pipeline::find_borders() {
@@ -120,8 +125,6 @@ void Pipeline::find_borders() {
 }
 
 void Pipeline::find_lines() {
-  area_ = 0;
-  for (const float a : graph().areas) area_ += a;
   if (is_cloud_) {
     soft_guides_.clear();
     lay_guides(mean_length());
@@ -242,7 +245,7 @@ bool Pipeline::choose_lattice() {
   };
   has_thin_limbs_ = is_coarse_for_bends();
   constexpr double few_holes = 0.1;
-  const bool any = has_thin_limbs_ || (has_few_faces() && share_of_holes() > few_holes);
+  const bool any = has_thin_limbs_ || (may_show_details() && share_of_holes() > few_holes);
   if (!any && !many_abreast({})) return false;  // nor are there without the borders
   if (has_branches()) return false;
   const auto border = border_edges(surface_, context_);
@@ -251,7 +254,7 @@ bool Pipeline::choose_lattice() {
   return true;
 }
 
-bool Pipeline::has_few_faces() const {
+bool Pipeline::may_show_details() const {
   constexpr double few = 30000;
   return area_ < few * plan_.target.face_area(area_);
 }
@@ -468,6 +471,7 @@ void Pipeline::change_target(const RemeshOptions& options) {
   const bool started_elsewhere = std::exchange(plan_.other_start, 0) != 0;
   const bool was_thorough = std::exchange(plan_.is_thorough, false);
   wanted_ = options;
+  regularity_ = options.regularity;
   aim_at(options.faces);
   may_have_faults_ = true;
   find_lines();

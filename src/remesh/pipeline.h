@@ -31,8 +31,9 @@
 namespace meshgrain {
 
 /// The stages of remesh(), in their order: each leaves what the next ones need. Those up to the
-/// graph are in pipeline_surface.cpp, those from the fields on in pipeline_faces.cpp, and what is
-/// done where these are not good enough in pipeline_attempts.cpp and pipeline_regularity.cpp.
+/// graph are in pipeline_surface.cpp, those from there to the orientation field, and what is read
+/// off in the end, in pipeline.cpp, positions and faces in pipeline_faces.cpp, and what is done
+/// where these are not good enough in pipeline_attempts.cpp and pipeline_regularity.cpp.
 class Pipeline {
  public:
   Pipeline(const Mesh& input, const RemeshOptions& options, const Context& context);
@@ -206,8 +207,8 @@ class Pipeline {
 
   /// Quads with a corner of 180 degrees or more, and faces that look away from the surface.
   std::vector<Index> inverted_faces() const;
-  /// Inverted faces, and pairs that pass through each other.
-  std::size_t faults() const;
+  /// Inverted faces, and pairs that pass through each other, be that inherent or not.
+  std::size_t count_all_faults() const;
   /// Leaves no faces, but all that others can be made from.
   Attempt take_attempt();
   void put_back(Attempt&& attempt);
@@ -217,9 +218,12 @@ class Pipeline {
   /// Faces as regular as is aimed at now. Returns whether they are clearly more so than those
   /// before, and no worse.
   bool make_more_regular(const MeshStatistics& before, const Flaws& flaws_before);
+  /// Whether faces that are tried are mended, or only smoothed, to be compared with others.
+  enum class Mends { yes, no };
   /// Makes the faces once more, after a change of what they are made from, and smooths them. Keeps
   /// what was before, and returns false, unless these are better.
-  bool try_again(const std::function<bool()>& is_better, const std::function<void()>& change = {});
+  bool try_again(const std::function<bool()>& is_better, const std::function<void()>& change = {},
+                 Mends mends = Mends::yes);
 
   /// Without a look at creases. Returns false if the faces are crumpled, where that is asked: they
   /// have not been mended, then.
@@ -237,7 +241,7 @@ class Pipeline {
   /// It must: given positions are for one.
   bool has_given_fine_lattice() const;
   /// Among more faces holes and ends are little to see, for twice the time and the memory.
-  bool has_few_faces() const;
+  bool may_show_details() const;
   /// Edges between more than two faces: all of these would have to get the same new vertices.
   bool has_branches() const;
   /// Returns whether the lattice is finer now.
@@ -259,7 +263,7 @@ class Pipeline {
   /// steps of a surface around voxels, or parts that are thinner than a face. First without those
   /// that have no room, then without any. Marked edges, such as the borders of materials, go with
   /// them. Returns whether that is better.
-  bool try_without_creases(const Flaws& before);
+  bool try_without_creases(const Flaws& before, Mends mends = Mends::yes);
   bool leaves_out_creases() const { return plan_.room_for_creases == no_creases; }
   /// Whether there may be creases that nobody asked for.
   bool may_leave_out_creases() const;
@@ -362,6 +366,7 @@ class Pipeline {
   VertexFaces around_;                                   // its vertices, once it has a graph
   SurfaceSize input_size_{};                             // of the surface before it is refined
   Hierarchy hierarchy_;
+  bool has_all_levels_ = false;
   Graph graph_of_vertices_;  // if that of the hierarchy is of faces
   double area_ = 0;
   std::vector<std::uint8_t>
@@ -372,7 +377,6 @@ class Pipeline {
   std::vector<GuideRun> soft_guides_;  // that fields are drawn to
   static constexpr double no_creases = std::numeric_limits<double>::infinity();
   bool has_tried_without_creases_ = false;  // for the faces that there are
-  bool only_compares_ = false;              // attempts, and mends none
   RoughFaces rough_;                        // of those that were smoothed last
   FeatureLines border_lines_;               // which vertices slide along if the graph is of faces
   bool may_have_faults_ = true;             // what is done after mend_flaws() adds none

@@ -66,7 +66,7 @@ std::vector<Index> Pipeline::inverted_faces() const {
   return inverted;
 }
 
-std::size_t Pipeline::faults() const {
+std::size_t Pipeline::count_all_faults() const {
   return inverted_faces().size() + find_crossings(made_.extraction.mesh, context_).size();
 }
 
@@ -89,7 +89,7 @@ LostSurface Pipeline::lost_surface() const {
 }
 
 bool Pipeline::shows_faults() const {
-  return options_.smoothing > 0 && has_few_faces() && !has_given_positions(options_);
+  return options_.smoothing > 0 && may_show_details() && !has_given_positions(options_);
 }
 
 bool Pipeline::may_be_irregular() const {
@@ -160,9 +160,7 @@ void Pipeline::smooth_faces() {
     smooth_faces_unless({});
   } else if (!smooth_faces_unless(are_crumpled)) {
     RoughFaces rough = std::move(rough_);
-    only_compares_ = true;
-    if (try_without_creases(flaws(0))) rough = std::move(rough_);
-    only_compares_ = false;
+    if (try_without_creases(flaws(0), Mends::no)) rough = std::move(rough_);
     made_.extraction = std::move(rough.extraction);
     made_.is_split = rough.is_split;
     smooth_faces_unless({});
@@ -243,7 +241,7 @@ bool Pipeline::follows_creases() const {
   return std::ranges::any_of(plan_.features.vertices, is_inside);
 }
 
-bool Pipeline::try_without_creases(const Flaws& before) {
+bool Pipeline::try_without_creases(const Flaws& before, Mends mends) {
   const std::size_t faces = made_.extraction.mesh.faces.size();
   const bool are_too_fine =
       before.faults.all() > 0 &&
@@ -269,7 +267,7 @@ bool Pipeline::try_without_creases(const Flaws& before) {
       complete_levels();
       orient();
     };
-    if (!try_again(is_better, leave_out)) continue;
+    if (!try_again(is_better, leave_out, mends)) continue;
     std::vector<std::string>& notes = plan_.notes;
     std::erase_if(notes, [](const auto& note) { return note.starts_with("without some creases"); });
     notes.emplace_back(fmt::format(
@@ -355,7 +353,8 @@ void Pipeline::try_coarser_lattice() {
   const Flaws before = flaws(0);
   if (!may_be_of_use(before.faults) || before.are_inherent(made_.extraction.mesh.faces.size()))
     return;
-  try_again([&] { return faults() < before.all_faults; }, [&] { aim_at(options_.faces); });
+  try_again([&] { return count_all_faults() < before.all_faults; },
+            [&] { aim_at(options_.faces); });
 }
 
 bool Pipeline::is_of_use() {
@@ -370,11 +369,11 @@ bool Pipeline::make_faces_again() {
 }
 
 bool Pipeline::try_again(const std::function<bool()>& is_better,
-                         const std::function<void()>& change) {
+                         const std::function<void()>& change, Mends mends) {
   Attempt before = take_attempt();
   if (change) change();
   if (make_faces_again()) {
-    if (only_compares_) {
+    if (mends == Mends::no) {
       smooth_faces_unless([] { return true; });
     } else {
       smooth_faces_unless({});

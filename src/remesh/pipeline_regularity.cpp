@@ -16,20 +16,28 @@ struct Slack {
   double singularities = 1, area_sigma = 1, angle_sigma = 1;
 };
 
-/// Of the shapes of faces: neither areas nor angles are clearly less even, nor both together. Where
-/// most irregular vertices go, that may be worth a little.
+/// What the shapes of faces may cost: areas and angles each, and both together.
+struct Price {
+  double each, both;
+};
+
+/// By how many irregular vertices go. Neither areas nor angles get clearly less even for a few.
+Price price_of(double share_left, bool is_worth_shape) {
+  if (!is_worth_shape || share_left > 0.8) return {1.03, 1};
+  if (share_left > 0.5) return {1.15, 1.05};
+  if (share_left > 0.2) return {1.2, 1.3};
+  return {1.5, 1.3};
+}
+
 bool are_no_worse(const MeshStatistics& now, const MeshStatistics& before, bool is_worth_shape,
                   const Slack& slack = {}) {
-  const auto singularities = static_cast<double>(now.singularities);
-  const auto become_fewer = [&](double times) {
-    return times * singularities <= slack.singularities * static_cast<double>(before.singularities);
-  };
-  const bool may_cost = is_worth_shape && become_fewer(2);
-  const double each = !may_cost ? 1.03 : become_fewer(5) ? 1.5 : 1.2, both = may_cost ? 1.3 : 1;
+  const double share_left = static_cast<double>(now.singularities) /
+                            (slack.singularities * static_cast<double>(before.singularities));
+  const Price most = price_of(share_left, is_worth_shape);
   const double area = now.area_sigma / slack.area_sigma;
   const double angle = now.angle_sigma / slack.angle_sigma;
-  return area <= each * before.area_sigma && angle <= each * before.angle_sigma &&
-         area * angle <= both * before.area_sigma * before.angle_sigma;
+  return area <= most.each * before.area_sigma && angle <= most.each * before.angle_sigma &&
+         area * angle <= most.both * before.area_sigma * before.angle_sigma;
 }
 
 }  // namespace
@@ -38,15 +46,15 @@ void Pipeline::try_less_regular() {
   const double moderate = RemeshOptions().regularity;
   const bool may_try = options_.retries && !is_cloud_ && options_.smoothing > 0;
   if (!may_try || regularity_ <= moderate) return;
-  const std::size_t before = faults();
+  const std::size_t before = count_all_faults();
   if (before == 0 || before > made_.extraction.mesh.faces.size() / Flaws::hopeless) return;
   for (const double share : {0.5, 0.0}) {
     regularity_ = moderate + share * (options_.regularity - moderate);
     // Where the input passes through itself there are always some.
-    if (!try_again([&] { return 2 * faults() < before; })) continue;
+    if (!try_again([&] { return 2 * count_all_faults() < before; })) continue;
     plan_.notes.emplace_back(
         "less regular than was asked for: faces would be inverted or pass through each other");
-    break;
+    return;
   }
   regularity_ = options_.regularity;
 }

@@ -51,7 +51,7 @@ void Pipeline::clean_up(Mesh input) {
     enter(frame_, input, context_);
     const bool is_ready = is_cloud_ || input.faces.uniform_degree() == 3;
     surface_ = is_ready ? std::move(input) : triangulate(input);
-    if (!is_cloud_) turn_caps(surface_, context_);
+    if (!is_cloud_ && !options_.lock_borders) turn_caps(surface_, context_);
     const OrientReport oriented = orient_faces(surface_, context_);
     add_notes(describe(oriented));
     if (!is_cloud_ && oriented.may_have_border) clean_border();

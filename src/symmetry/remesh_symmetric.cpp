@@ -177,7 +177,7 @@ RemeshResult remesh_symmetric(Mesh input, RemeshOptions options, const RemeshHal
     before = topology(input);
     input = triangulate(input);
     // Before the cut, whose border has to stay where it is.
-    const Target target(options, options.faces, vertices, 1);
+    const Target target(options, options.faces, 0, 1);  // the options have a count
     side = target.face_side(surface_area(input, context));
     if (sharpen_part(input, options, side, notes, context)) {
       options.features.creases = Creases::marked;
