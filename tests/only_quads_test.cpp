@@ -127,23 +127,28 @@ TEST(OnlyQuads, LinesAFaceApartAreKept) {
   }
 }
 
-/// A torus of radius 1 around the z axis.
-Mesh ring(double radius) {
-  constexpr Index along = 200, around = 24;
+/// A closed tube: `position(a, b)` at angles along it and around it.
+template <typename Position>
+Mesh closed_tube(Index along, Index around, const Position& position) {
   Mesh mesh;
   for (Index k = 0; k < along * around; ++k) {
-    const double a = 2 * std::numbers::pi * (k / around) / along;
-    const double b = 2 * std::numbers::pi * (k % around) / around;
-    const double from_axis = 1 + radius * std::cos(b);
-    mesh.positions.push_back(
-        Eigen::Vector3d(from_axis * std::cos(a), from_axis * std::sin(a), radius * std::sin(b))
-            .cast<float>());
+    const Eigen::Vector3d p = position(2 * std::numbers::pi * (k / around) / along,
+                                       2 * std::numbers::pi * (k % around) / around);
+    mesh.positions.push_back(p.cast<float>());
     const Index next = k % around + 1 < around ? k + 1 : k + 1 - around;
     const auto beyond = [&](Index v) { return (v + around) % (along * around); };
     mesh.faces.push_back(std::array<Index, 3>{k, beyond(k), beyond(next)});
     mesh.faces.push_back(std::array<Index, 3>{k, beyond(next), next});
   }
   return mesh;
+}
+
+/// A torus of radius 1 around the z axis.
+Mesh ring(double radius) {
+  return closed_tube(200, 24, [&](double a, double b) {
+    const double from_axis = 1 + radius * std::cos(b);
+    return Eigen::Vector3d(from_axis * std::cos(a), from_axis * std::sin(a), radius * std::sin(b));
+  });
 }
 
 /// Of three to eight quads around. A coarser lattice often leaves inverted ones.
@@ -185,6 +190,35 @@ TEST(OnlyQuads, ThinRingsCanBeMirrored) {
         made::expect_same_topology(mesh_statistics(output), mesh_statistics(input));
       }
     }
+  }
+}
+
+/// A wire in the shape of a trefoil knot.
+Mesh knotted_wire(double radius) {
+  return closed_tube(400, 16, [&](double a, double b) {
+    const Eigen::Vector3d p(std::sin(a) + 2 * std::sin(2 * a), std::cos(a) - 2 * std::cos(2 * a),
+                            -std::sin(3 * a));
+    const Eigen::Vector3d ahead(std::cos(a) + 4 * std::cos(2 * a),
+                                -std::sin(a) + 4 * std::sin(2 * a), -3 * std::cos(3 * a));
+    const Eigen::Vector3d side = ahead.cross(Eigen::Vector3d::UnitZ()).normalized();
+    const Eigen::Vector3d up = side.cross(ahead).normalized();
+    return Eigen::Vector3d(p + radius * (std::cos(b) * up + std::sin(b) * side));
+  });
+}
+
+/// With two cells of the coarse lattice around, no row can go straight.
+TEST(OnlyQuads, RowsGoStraightAlongWires) {
+  const Mesh input = knotted_wire(0.06);
+  for (const std::size_t count : {900, 1000, 1100, 1200, 1300}) {
+    SCOPED_TRACE(count);
+    RemeshOptions options;
+    options.face_count = count;
+    const Mesh output = remesh(input, options).mesh;
+    expect_quads(output);
+    const MeshStatistics statistics = mesh_statistics(output);
+    made::expect_same_topology(statistics, mesh_statistics(input));
+    EXPECT_LE(statistics.singularities, 30u);
+    EXPECT_GT(statistics.jacobian_p01, 0.7);
   }
 }
 

@@ -1,6 +1,8 @@
 #include "remesh/flattened_share.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "util/sum.h"
@@ -68,6 +70,33 @@ double flattened_share(const Hierarchy& hierarchy, double patch, const Context& 
     }
   }
   return area > 0 ? left / area : 1;
+}
+
+double share_of_thin_tubes(const Graph& graph, double length, const Context& context) {
+  constexpr double edges_around = 3, whole_turn = 2 * std::numbers::pi;
+  const auto least = static_cast<float>(whole_turn / (edges_around * length));
+  const auto is_thin = [&](Index i) {
+    return std::ranges::any_of(graph.neighbors_of(i), [&](Index j) {
+      const float cosine = std::clamp(graph.normals[i].dot(graph.normals[j]), -1.0f, 1.0f);
+      return std::acos(cosine) > least * (graph.positions[i] - graph.positions[j]).norm();
+    });
+  };
+  struct Areas {
+    double thin = 0, all = 0;
+    Areas operator+(const Areas& other) const { return {thin + other.thin, all + other.all}; }
+  };
+  const Areas areas = sum_over_ranges(
+      graph.size(),
+      [&](std::size_t begin, std::size_t end) {
+        Areas sum;
+        for (auto i = static_cast<Index>(begin); i < end; ++i) {
+          sum.all += graph.areas[i];
+          if (is_thin(i)) sum.thin += graph.areas[i];
+        }
+        return sum;
+      },
+      context);
+  return areas.all > 0 ? areas.thin / areas.all : 0;
 }
 
 }  // namespace meshgrain

@@ -9,4 +9,8 @@ namespace meshgrain {
 /// bends by more than a crease does stays as it is.
 double flattened_share(const Hierarchy& hierarchy, double patch, const Context& context);
 
+/// What share of a surface's area bends so much one way that a tube that did would have fewer than
+/// three edges of that length around it.
+double share_of_thin_tubes(const Graph& graph, double length, const Context& context);
+
 }  // namespace meshgrain
