@@ -98,9 +98,9 @@ class Lines {
 
   bool has_clean_end(const Incidence& end, std::span<const Incidence> here) const {
     constexpr std::ptrdiff_t at_corner = 3;
-    constexpr double much_flatter = 1.0 / 3, much_flatter_facets = 0.46, about_right = 70;
+    constexpr double much_flatter = 1.0 / 3, much_flatter_facets = 0.46;
     const double angle = edges_[end.edge].angle;
-    const bool may_be_facets = beside_ == Beside::facets && angle >= about_right;
+    const bool may_be_facets = beside_ == Beside::facets && angle >= about_right_degrees;
     const double bound = (may_be_facets ? much_flatter_facets : much_flatter) * angle;
     std::ptrdiff_t sharp = 0;
     for (const Incidence& i : here) {

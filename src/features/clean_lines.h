@@ -5,7 +5,10 @@
 
 namespace meshgrain {
 
-/// What may meet a clean line that bends by a right angle.
+/// What bends by this much bends by about a right angle.
+inline constexpr double about_right_degrees = 70;
+
+/// What may meet a clean line that does.
 enum class Beside {
   flat,    ///< Edges that are much flatter, as they must be anywhere.
   facets,  ///< Those between the sides of a prism of ten or more, as well.

@@ -114,7 +114,9 @@ SurfaceKind kind_of_surface(const Mesh& mesh, const RimAndSharpEdges& edges,
   // Measured on 670 parts, and on 220 sculptures, scans, bones and a car's body.
   constexpr double outer = 0.35;
   const auto is_clean_beside_facets = [&] {
-    return share_of_clean_lines(mesh, edges, sharp_degrees, Beside::facets) > clean;
+    const double about_right = length_above(mesh, edges.sharp, about_right_degrees, context);
+    return share + about_right / clear > clean &&  // no others become clean
+           share_of_clean_lines(mesh, edges, sharp_degrees, Beside::facets) > clean;
   };
   const bool is_part = (share > partly_clean || is_clean_beside_facets()) &&
                        share_that_sticks_out(mesh, context) > outer;

@@ -19,6 +19,9 @@ namespace {
 
 using Vec3d = Eigen::Vector3d;
 
+/// A cap is no higher than this share of its longest edge. Slivers of tessellations mostly are.
+constexpr float flat = 1e-3f;
+
 /// How high a triangle is over its longest edge, as a share of that, and where that edge starts:
 /// at corner k, to the next one.
 struct Shape {
@@ -41,6 +44,7 @@ class Caps {
   }
   bool is_gone(Index f) const { return corners_[3 * f] == corners_[3 * f + 1]; }
   Shape shape(const Corners& t) const;
+  bool may_be_cap(Index f) const;
   static std::uint64_t key(Index a, Index b) {
     const auto e = edge_of(a, b);
     return std::uint64_t{e[0]} << 32 | e[1];
@@ -76,8 +80,7 @@ Shape Caps::shape(const Corners& t) const {
   if (!(longest > 0)) return {0, 0, 0, false};
   const Vec3d along = p[(k + 1) % 3] - p[k], apex = p[(k + 2) % 3] - p[k];
   const double height = along.cross(apex).norm() / longest, way = along.dot(apex) / longest;
-  // Slivers of tessellations are higher, and have a short edge.
-  constexpr double flat = 1e-3, away_from_ends = 1e-2;
+  constexpr double away_from_ends = 1e-2;  // slivers of tessellations have a short edge
   return {height, longest, k, height < flat && std::min(way, 1 - way) > away_from_ends};
 }
 
@@ -162,8 +165,18 @@ void Caps::move_marks() {
   std::ranges::sort(mesh_.marked_edges);
 }
 
+/// As good as shape(), for all that are clearly higher.
+bool Caps::may_be_cap(Index f) const {
+  const Vec3& a = mesh_.positions[corners_[3 * f]];
+  const Vec3 b = mesh_.positions[corners_[3 * f + 1]] - a;
+  const Vec3 c = mesh_.positions[corners_[3 * f + 2]] - a;
+  const float longest = std::max({b.squaredNorm(), c.squaredNorm(), (c - b).squaredNorm()});
+  constexpr float higher = 2 * flat;
+  return b.cross(c).squaredNorm() <= higher * higher * longest * longest;
+}
+
 std::size_t Caps::run(const Context& context) {
-  const auto is_cap = [&](Index f) { return shape(face(f)).is_cap; };
+  const auto is_cap = [&](Index f) { return may_be_cap(f) && shape(face(f)).is_cap; };
   const std::vector<Index> caps = indices_where(mesh_.faces.size(), is_cap, context);
   if (caps.empty()) return 0;
   note_faces(caps, context);
