@@ -117,7 +117,8 @@ RemeshResult remesh(Mesh input, const RemeshOptions& options = {},
 /// Several sizes of one mesh, a result for each of `face_counts` (at least one, all positive; the
 /// numbers in `options` are not used), in their order. Cleaning, graph, hierarchy and orientation
 /// field are made once, fine enough for the largest, so that the meshes follow the same directions;
-/// but a mesh with flaws may get a field that starts elsewhere.
+/// but a mesh with flaws may get a field that starts elsewhere. What needs another surface, such as
+/// one with narrow tunnels closed, is only done by remesh().
 /// A piece is left out of all (RemeshOptions::min_component) if it is small for the largest.
 /// RemeshResult::fields are left empty. Throws Error as remesh() does, and for a symmetry or a
 /// given position field.

@@ -22,10 +22,10 @@ using Vec3d = Eigen::Vector3d;
 /// A cap is no higher than this share of its longest edge. Slivers of tessellations mostly are.
 constexpr float flat = 1e-3f;
 
-/// How high a triangle is over its longest edge, as a share of that, and where that edge starts:
-/// at corner k, to the next one.
+/// How high a triangle is over its longest edge, as a share of that, how long that is, and where it
+/// starts: at corner k, to the next one.
 struct Shape {
-  double height, longest;
+  double height, squared_length;
   unsigned k;
   bool is_cap;
 };
@@ -76,12 +76,12 @@ Shape Caps::shape(const Corners& t) const {
   std::array<double, 3> squares;
   for (unsigned i = 0; i < 3; ++i) squares[i] = (p[(i + 1) % 3] - p[i]).squaredNorm();
   const auto k = static_cast<unsigned>(std::ranges::max_element(squares) - squares.begin());
-  const double longest = squares[k];
-  if (!(longest > 0)) return {0, 0, 0, false};
+  const double square = squares[k];
+  if (!(square > 0)) return {0, 0, 0, false};
   const Vec3d along = p[(k + 1) % 3] - p[k], apex = p[(k + 2) % 3] - p[k];
-  const double height = along.cross(apex).norm() / longest, way = along.dot(apex) / longest;
+  const double height = along.cross(apex).norm() / square, way = along.dot(apex) / square;
   constexpr double away_from_ends = 1e-2;  // slivers of tessellations have a short edge
-  return {height, longest, k, height < flat && std::min(way, 1 - way) > away_from_ends};
+  return {height, square, k, height < flat && std::min(way, 1 - way) > away_from_ends};
 }
 
 void Caps::put(Index f, const Corners& t) {
@@ -125,7 +125,8 @@ bool Caps::turn(Index f, unsigned k) {
   if (beyond == apex || !is_known(apex, beyond) || !beside(apex, beyond).empty()) return false;
   const Corners first{apex, a, beyond}, second{beyond, b, apex};
   const Shape before = shape(t), one = shape(first), other = shape(second);
-  const bool are_shorter = std::max(one.longest, other.longest) < before.longest;
+  const bool are_shorter =
+      std::max(one.squared_length, other.squared_length) < before.squared_length;
   if (!are_shorter && std::min(one.height, other.height) <= before.height) return false;
   take(f);
   take(g);
@@ -170,9 +171,9 @@ bool Caps::may_be_cap(Index f) const {
   const Vec3& a = mesh_.positions[corners_[3 * f]];
   const Vec3 b = mesh_.positions[corners_[3 * f + 1]] - a;
   const Vec3 c = mesh_.positions[corners_[3 * f + 2]] - a;
-  const float longest = std::max({b.squaredNorm(), c.squaredNorm(), (c - b).squaredNorm()});
+  const float square = std::max({b.squaredNorm(), c.squaredNorm(), (c - b).squaredNorm()});
   constexpr float higher = 2 * flat;
-  return b.cross(c).squaredNorm() <= higher * higher * longest * longest;
+  return b.cross(c).squaredNorm() <= higher * higher * square * square;
 }
 
 std::size_t Caps::run(const Context& context) {
@@ -184,16 +185,16 @@ std::size_t Caps::run(const Context& context) {
   std::priority_queue<std::pair<double, Index>> open;
   const auto add = [&](Index f) {
     const Shape here = shape(face(f));
-    if (here.is_cap) open.push({here.longest, f});
+    if (here.is_cap) open.push({here.squared_length, f});
   };
   std::ranges::for_each(caps, add);
   std::size_t mended = 0, dropped = 0;
   for (std::size_t left = 16 * caps.size(); left > 0 && !open.empty(); --left) {
-    const auto [longest, f] = open.top();
+    const auto [squared_length, f] = open.top();
     open.pop();
     if (is_gone(f)) continue;
     const Shape here = shape(face(f));
-    if (!here.is_cap || here.longest != longest) continue;
+    if (!here.is_cap || here.squared_length != squared_length) continue;
     const auto faces = beside(face(f)[here.k], face(f)[(here.k + 1) % 3]);
     const std::vector<Index> both(faces.begin(), faces.end());
     if (turn(f, here.k)) {

@@ -46,6 +46,19 @@ Patches merged(const Patches& patches, const Children& children, const Context& 
   return result;
 }
 
+/// The finest level whose nodes stand for squares of that side, in the mean: within these noise
+/// cancels out.
+const Graph& level_of_nodes(const Hierarchy& hierarchy, double side) {
+  double area = 0;
+  for (const float a : hierarchy.levels[0].areas) area += a;
+  std::size_t level = 0;
+  const auto is_finer = [&] {
+    return area < side * side * static_cast<double>(hierarchy.levels[level].size());
+  };
+  while (level + 1 < hierarchy.levels.size() && is_finer()) ++level;
+  return hierarchy.levels[level];
+}
+
 }  // namespace
 
 double flattened_share(const Hierarchy& hierarchy, double patch, const Context& context) {
@@ -72,7 +85,8 @@ double flattened_share(const Hierarchy& hierarchy, double patch, const Context& 
   return area > 0 ? left / area : 1;
 }
 
-double share_of_thin_tubes(const Graph& graph, double length, const Context& context) {
+double share_of_thin_tubes(const Hierarchy& hierarchy, double length, const Context& context) {
+  const Graph& graph = level_of_nodes(hierarchy, 0.3 * length);
   constexpr double edges_around = 3, whole_turn = 2 * std::numbers::pi;
   const auto least = static_cast<float>(whole_turn / (edges_around * length));
   const auto is_thin = [&](Index i) {

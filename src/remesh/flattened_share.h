@@ -10,7 +10,7 @@ namespace meshgrain {
 double flattened_share(const Hierarchy& hierarchy, double patch, const Context& context);
 
 /// What share of a surface's area bends so much one way that a tube that did would have fewer than
-/// three edges of that length around it.
-double share_of_thin_tubes(const Graph& graph, double length, const Context& context);
+/// three edges of that length around it. Noise counts for little.
+double share_of_thin_tubes(const Hierarchy& hierarchy, double length, const Context& context);
 
 }  // namespace meshgrain

@@ -211,7 +211,7 @@ bool Pipeline::lines_have_no_room() const {
 bool Pipeline::is_coarse_for_bends() const {
   // All were measured: beyond them the finer lattice only has more singularities.
   constexpr double most_faces = 1500, little_bent = 0.945, mostly_tubes = 0.55;
-  if (share_of_thin_tubes(graph(), mean_length(), context_) > mostly_tubes) return true;
+  if (share_of_thin_tubes(hierarchy_, mean_length(), context_) > mostly_tubes) return true;
   return area_ < most_faces * plan_.target.face_area(area_) &&
          flattened_share(hierarchy_, 2 * std::pow(mean_length(), 2), context_) < little_bent;
 }
@@ -477,6 +477,7 @@ void Pipeline::change_target(const RemeshOptions& options) {
   may_have_faults_ = true;
   find_lines();
   const std::size_t nodes = graph().size();
+  complete_levels();
   if (choose_lattice()) refine_for_lattice();
   const bool is_refined = graph().size() != nodes;
   size_faces();
