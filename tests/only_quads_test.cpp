@@ -151,6 +151,15 @@ Mesh ring(double radius) {
   });
 }
 
+/// Of what comes of a closed tube with so many faces: quads alone, and of the same topology.
+MeshStatistics statistics_of_quads(const Mesh& input, const RemeshOptions& options) {
+  const Mesh output = remesh(input, options).mesh;
+  expect_quads(output);
+  const MeshStatistics statistics = mesh_statistics(output);
+  made::expect_same_topology(statistics, mesh_statistics(input));
+  return statistics;
+}
+
 /// Of three to eight quads around. A coarser lattice often leaves inverted ones.
 TEST(OnlyQuads, ThinRingsAreEven) {
   constexpr double radii[] = {0.1, 0.12, 0.15};
@@ -162,10 +171,7 @@ TEST(OnlyQuads, ThinRingsAreEven) {
       SCOPED_TRACE(std::to_string(radius) + " " + std::to_string(count));
       RemeshOptions options;
       options.face_count = count;
-      const Mesh output = remesh(input, options).mesh;
-      expect_quads(output);
-      const MeshStatistics statistics = mesh_statistics(output);
-      made::expect_same_topology(statistics, mesh_statistics(input));
+      const MeshStatistics statistics = statistics_of_quads(input, options);
       EXPECT_EQ(statistics.inverted_quads, 0u);
       sigma += statistics.area_sigma / (std::size(radii) * std::size(counts));
       jacobian += statistics.jacobian_p01 / (std::size(radii) * std::size(counts));
@@ -185,9 +191,7 @@ TEST(OnlyQuads, ThinRingsCanBeMirrored) {
         RemeshOptions options;
         options.face_count = count;
         options.symmetry.axes = {both, false, true};
-        const Mesh output = remesh(input, options).mesh;
-        expect_quads(output);
-        made::expect_same_topology(mesh_statistics(output), mesh_statistics(input));
+        statistics_of_quads(input, options);
       }
     }
   }
@@ -213,10 +217,7 @@ TEST(OnlyQuads, RowsGoStraightAlongWires) {
     SCOPED_TRACE(count);
     RemeshOptions options;
     options.face_count = count;
-    const Mesh output = remesh(input, options).mesh;
-    expect_quads(output);
-    const MeshStatistics statistics = mesh_statistics(output);
-    made::expect_same_topology(statistics, mesh_statistics(input));
+    const MeshStatistics statistics = statistics_of_quads(input, options);
     EXPECT_LE(statistics.singularities, 30u);
     EXPECT_GT(statistics.jacobian_p01, 0.7);
   }

@@ -39,10 +39,6 @@ double vertices_of_sliver(const Mesh& mesh, std::size_t f, double limit) {
   return sum;
 }
 
-std::uint64_t key_of(const std::array<Index, 2>& edge) {
-  return std::uint64_t{edge[0]} << 32 | edge[1];
-}
-
 /// The triangles of a mesh, with those across their edges, so that edges can be split and turned.
 class Refinement {
  public:

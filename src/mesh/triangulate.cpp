@@ -12,6 +12,7 @@
 #include <tuple>
 #include <utility>
 
+#include "util/edge_of.h"
 #include "util/hash.h"
 
 namespace meshgrain {
@@ -30,9 +31,7 @@ class EdgeSet {
 
  private:
   static constexpr std::uint64_t empty = ~std::uint64_t{0};
-  static std::uint64_t key(Index a, Index b) {
-    return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
-  }
+  static std::uint64_t key(Index a, Index b) { return key_of(edge_of(a, b)); }
   std::size_t find(Index a, Index b) const {
     const std::size_t mask = table_.size() - 1;
     std::size_t slot = hash64(key(a, b)) & mask;

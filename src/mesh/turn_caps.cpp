@@ -45,10 +45,7 @@ class Caps {
   bool is_gone(Index f) const { return corners_[3 * f] == corners_[3 * f + 1]; }
   Shape shape(const Corners& t) const;
   bool may_be_cap(Index f) const;
-  static std::uint64_t key(Index a, Index b) {
-    const auto e = edge_of(a, b);
-    return std::uint64_t{e[0]} << 32 | e[1];
-  }
+  static std::uint64_t key(Index a, Index b) { return key_of(edge_of(a, b)); }
   std::span<const Index> beside(Index a, Index b) const {
     const auto found = faces_of_.find(key(a, b));
     return found == faces_of_.end() ? std::span<const Index>() : found->second;

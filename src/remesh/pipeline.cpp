@@ -485,7 +485,6 @@ void Pipeline::change_target(const RemeshOptions& options) {
   inherent_crossings_.reset();  // what is near to them depends on the size of a face
   if (room_before == plan_.room_for_creases && !started_elsewhere && !was_thorough && !is_refined)
     return;
-  complete_levels();
   orient();
 }
 

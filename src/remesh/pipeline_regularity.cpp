@@ -29,6 +29,7 @@ Price price_of(double share_left, bool is_worth_shape) {
   return {1.5, 1.3};
 }
 
+/// Of the shapes of faces, for that price.
 bool are_no_worse(const MeshStatistics& now, const MeshStatistics& before, bool is_worth_shape,
                   const Slack& slack = {}) {
   const double share_left = static_cast<double>(now.singularities) /

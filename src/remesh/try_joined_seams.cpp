@@ -36,10 +36,15 @@ void try_joined_seams(Made& made, const RemeshOptions& options, const Make& make
   const bool are_bad = all.inverted > 0 || made.are_many(all.crossings);
   if (!are_bad && (all.are_hardly_any() || !are_of_closed_surface())) return;
   const std::size_t own = std::exchange(made.faults.crossings, all.crossings);
-  Remaking remaking(made, options, make, context);
-  if (!remaking.keep_if_better(made_without_seams(remaking, made.seamed, made))) {
+  bool is_better = false;
+  try {
+    Remaking remaking(made, options, make, context);
+    is_better = remaking.keep_if_better(made_without_seams(remaking, made.seamed, made));
+  } catch (...) {
     made.faults.crossings = own;
+    throw;
   }
+  if (!is_better) made.faults.crossings = own;
 }
 
 }  // namespace meshgrain
