@@ -96,6 +96,62 @@ TEST(Chamfers, SurfacesMeetWhereThePartHasItsEdges) {
   EXPECT_LE(off / count, 0.04 * 2.0 / cells);
 }
 
+/// Where a concave crease comes out between two others, more of the surface is in the way than at
+/// other corners.
+TEST(Chamfers, ConcaveCreasesEndInCorners) {
+  constexpr int cells = 48;
+  // Of a T: its bar, and its stem on it.
+  const Point bar(0.71, 0.61, 0.2), stem(0.21, 0.61, 0.5);
+  std::vector<Point> corners;
+  for (const double x : {-bar.x(), -stem.x(), stem.x(), bar.x()}) {
+    const bool is_of_stem = std::abs(x) < bar.x();
+    for (const double y : {-bar.y(), bar.y()}) {
+      for (const double z : {is_of_stem ? 0.8 : -0.2, 0.2}) corners.emplace_back(x, y, z);
+    }
+  }
+  for (const Eigen::Matrix3d& by : {Eigen::Matrix3d(Eigen::Matrix3d::Identity()), askew}) {
+    const auto part = [&](const Point& p) {
+      const Point q = by.transpose() * p + Point(0, 0, 0.3);
+      return std::min(box(q, bar), box(q - Point(0, 0, 0.3), stem));
+    };
+    Mesh surface = made::sampled_on_grid(part, cells);
+    ASSERT_EQ(sharpen(surface, 0.05, Context()), Blur::chamfers);
+    std::vector<int> creases(surface.positions.size(), 0);
+    for (const auto& edge : surface.marked_edges) {
+      for (const Index v : edge) ++creases[v];
+    }
+    std::size_t found = 0;
+    for (const Point& corner : corners) {
+      const Point place = by * (corner - Point(0, 0, 0.3));
+      for (Index v = 0; v < creases.size(); ++v) {
+        const double off = (surface.positions[v].cast<double>() - place).norm();
+        found += creases[v] == 3 && off < 0.2 * 2.0 / cells;
+      }
+    }
+    EXPECT_GE(found, by.isIdentity() ? 16u : 14u);
+  }
+}
+
+/// A handle of a few cells is not smooth, wherever one looks.
+TEST(Chamfers, PartsWithThinHandlesGetTheirCreasesBackToo) {
+  constexpr int cells = 100;
+  const auto mug = [](const Point& p) {
+    const Point q = askew.transpose() * p;
+    const double wall = std::max(cylinder(q, 0.6, 0.7), -cylinder(q - Point(0, 0, 0.3), 0.46, 0.8));
+    const double ring = std::hypot(std::hypot(q.x() - 0.6, q.z()) - 0.3, q.y()) - 0.09;
+    return std::min(wall, std::max(ring, 0.5 - std::hypot(q.x(), q.y())));
+  };
+  Mesh surface = made::sampled_on_grid(mug, cells);
+  ASSERT_EQ(sharpen(surface, 0.05, Context()), Blur::chamfers);
+  double around = 0;
+  for (const auto& [a, b] : surface.marked_edges) {
+    const Vec3 p = surface.positions[a], q = surface.positions[b];
+    const double z = (askew.transpose() * p.cast<double>()).z();
+    if (std::abs(z - 0.7) < 0.02) around += (q - p).norm();
+  }
+  EXPECT_NEAR(around / (2 * std::numbers::pi * (0.6 + 0.46)), 1, 0.02);
+}
+
 TEST(Chamfers, AllElseStaysAsItIs) {
   constexpr int cells = 40;
   const auto ball = [](const Point& p) { return p.norm() - 0.7; };
@@ -175,7 +231,7 @@ TEST(Chamfers, SurfacesDoNotPassThroughEachOther) {
                     cylinder(q - Point(0.3 - deep, 0, 0), 0.2, 0.35));
   };
   Mesh surface = made::sampled_on_grid(column_at_wall, cells);
-  ASSERT_FALSE(sharpen_chamfers(surface, 0.05, Context()).empty());
+  ASSERT_FALSE(sharpen_chamfers(surface, 0.05, Chamfered::yes, Context()).empty());
   const double edge = edge_lengths(surface).mean;
   for (const auto& [f, g] : find_crossings(surface, Context())) {
     EXPECT_LE(penetration(surface, f, g), 0.06 * edge);

@@ -72,11 +72,11 @@ RoughVertices rough_vertices(const Mesh& triangles, const Context& context) {
 
 }  // namespace
 
-bool is_chamfered_part(const Mesh& triangles, std::span<const Mesh> samples,
-                       const Context& context) {
-  // Parts have .95 to 1, sculptures and scans at most .65. In between are parts with bores of three
-  // cells or gaps of one, whose sides are not known well enough: sharpened, their faces crossed.
-  constexpr double least = 0.95, least_of_sample = 0.6;
+Chamfered chamfered_part(const Mesh& triangles, std::span<const Mesh> samples,
+                         const Context& context) {
+  // Parts have .95 to 1. In between are parts with rods, handles and bores of a few cells, which
+  // are not smooth either; but so are shapes with roundings of two cells, and some sculptures.
+  constexpr double least = 0.95, least_of_some = 0.6, least_of_sample = 0.5;
   constexpr std::size_t telling = 100;  // vertices
   const auto share = [](const RoughVertices& rough) {
     return static_cast<double>(rough.at_creases) /
@@ -85,17 +85,20 @@ bool is_chamfered_part(const Mesh& triangles, std::span<const Mesh> samples,
   for (const Mesh& sample : samples) {
     if (sample.faces.size() == triangles.faces.size()) break;  // what is all of it comes next
     const RoughVertices rough = rough_vertices(sample, context);
-    if (rough.all >= telling && share(rough) < least_of_sample) return false;
+    if (rough.all >= telling && share(rough) < least_of_sample) return Chamfered::no;
   }
-  if (!is_evenly_sampled(triangles, context)) return false;
+  if (!is_evenly_sampled(triangles, context)) return Chamfered::no;
   const RoughVertices rough = rough_vertices(triangles, context);
-  if (share(rough) < least) return false;
+  if (share(rough) < least_of_some) return Chamfered::no;
   // Bevels that most of the vertices lie on are what the part is, whatever it was sampled on.
   constexpr double most_rough = 0.25;
   const auto vertices = static_cast<double>(triangles.positions.size());
-  if (static_cast<double>(rough.all) > most_rough * vertices) return false;
+  if (static_cast<double>(rough.all) > most_rough * vertices) return Chamfered::no;
   const RimAndSharpEdges edges = rim_and_sharp_edges(triangles, flat_degrees, context);
-  return kind_of_surface(triangles, edges, context) != SurfaceKind::mechanical_part;
+  if (kind_of_surface(triangles, edges, context) == SurfaceKind::mechanical_part) {
+    return Chamfered::no;
+  }
+  return share(rough) < least ? Chamfered::perhaps : Chamfered::yes;
 }
 
 }  // namespace meshgrain

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "meshgrain/surface.h"
+#include "util/sort_unique.h"
 
 namespace meshgrain {
 namespace {
@@ -99,23 +100,42 @@ void Chamfers::straighten_normals() {
 }
 
 /// From vertices that have a part to those beside them: so all that are of a part are connected.
+/// What another part reached first changes over to one that is nearer.
 void Chamfers::spread() {
   constexpr double of_the_way = 0.3;
   change_parts([&](Index v) {
-    if (has_part(v)) return part_of_[v];
+    if (is_smooth(v)) return v;
+    std::vector<Index> parts;
+    if (has_part(v)) parts.push_back(part_of_[v]);
+    each_beside(v, [&](Index w) {
+      if (has_part(w)) parts.push_back(part_of_[w]);
+    });
+    sort_unique(parts);
     Index best = no_index;
     double least = std::numeric_limits<double>::infinity();
-    each_beside(v, [&](Index w) {
-      if (!has_part(w)) return;
-      const Plane near = plane(w);
-      const double way = (position(v) - near.point).norm();
-      const double cost = std::abs(near.height(position(v))) + of_the_way * way;
-      if (cost >= least) return;
+    for (const Index part : parts) {
+      const Plane near = plane(part);
+      const double height = near.height(position(v));
+      const double cost = std::abs(height) + of_the_way * (position(v) - near.point).norm() +
+                          depth_behind(parts, near, position(v) - height * near.normal);
+      if (cost >= least) continue;
       least = cost;
-      best = part_of_[w];
-    });
+      best = part;
+    }
     return best;
   });
+}
+
+/// How far a point of one part lies behind others that rise from it, where it cannot be seen.
+double Chamfers::depth_behind(std::span<const Index> parts, const Plane& own,
+                              const Eigen::Vector3d& point) const {
+  double most = 0;
+  for (const Index part : parts) {
+    const Plane other = plane(part);
+    const bool rises = own.height(other.point) > 0 && meshgrain::meet_in_crease(own, other);
+    if (rises) most = std::max(most, -other.height(point));
+  }
+  return most;
 }
 
 }  // namespace meshgrain

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <span>
 #include <vector>
 
 #include "mesh/vertex_faces.h"
@@ -69,6 +70,8 @@ class Chamfers {
   void leave_out_small();
   void straighten_normals();
   void spread();
+  double depth_behind(std::span<const Index> parts, const Plane& own,
+                      const Eigen::Vector3d& point) const;
   /// As long as twice the area of the face.
   Eigen::Vector3d normal_and_area(Index f) const {
     const auto c = mesh_.faces[f];
