@@ -103,6 +103,26 @@ TEST(NoisyPart, CoarseScansStayAsTheyAre) {
   EXPECT_EQ(after.positions, before.positions);
 }
 
+/// Each has too few vertices to tell noise from facets, however many there are.
+TEST(NoisyPart, ManyLowPolyStonesStayAsTheyAre) {
+  const Mesh stone = scan(sample_shape("sphere", 0.15), 0.3);
+  ASSERT_LT(stone.positions.size(), 100u);
+  Mesh before;
+  for (int k = 0; before.positions.size() < 4000; ++k) {
+    const auto first = static_cast<Index>(before.positions.size());
+    for (const Vec3& p : stone.positions) {
+      before.positions.push_back(p + Vec3(3 * static_cast<float>(k), 0, 0));
+    }
+    for (std::size_t f = 0; f < stone.faces.size(); ++f) {
+      const auto face = stone.faces[f];
+      before.faces.push_back({first + face[0], first + face[1], first + face[2]});
+    }
+  }
+  Mesh after = before;
+  EXPECT_EQ(sharpen(after, output_edge(before, 5000), Context()), Blur::none);
+  EXPECT_EQ(after.positions, before.positions);
+}
+
 /// Few sides around a tube meet at angles that noise has, too.
 TEST(NoisyPart, CoarseTubesStayAsTheyAre) {
   constexpr std::size_t rings = 12, around = 48, across = 16;

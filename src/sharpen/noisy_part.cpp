@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "features/mechanical_creases.h"
+#include "mesh/pieces.h"
 #include "meshgrain/surface.h"
 #include "sharpen/crease_net.h"
 #include "sharpen/normal_filter.h"
@@ -65,6 +66,19 @@ bool bends_evenly(const Mesh& triangles) {
   return deviation < most * height;
 }
 
+/// Whether more than a little of it is in pieces of so few vertices that noise and shape cannot be
+/// told apart: low-poly stones are as rough as scans.
+bool is_of_small_pieces(const Mesh& triangles) {
+  constexpr std::size_t small = 1000;
+  constexpr double most = 0.1;
+  UnionFind pieces = pieces_of(triangles);
+  std::vector<std::size_t> sizes(triangles.positions.size(), 0);
+  for (Index v = 0; v < sizes.size(); ++v) ++sizes[pieces.find(v)];
+  std::size_t in_small = 0;
+  for (const std::size_t size : sizes) in_small += size < small ? size : 0;
+  return static_cast<double>(in_small) > most * static_cast<double>(sizes.size());
+}
+
 /// Of a sample. The creases of a part are there long before all of the noise is out:
 /// where there are hardly any then, they need not be exact.
 CreaseLengths lengths_without_noise(Mesh sample, const Context& context) {
@@ -97,7 +111,7 @@ bool is_noisy_part(const Mesh& triangles, std::span<const Mesh, 2> samples,
   // sculpture with few large faces.
   const RimAndSharpEdges edges = rim_and_sharp_edges(triangles, flat_degrees, context);
   const CreaseLengths as_it_is = crease_lengths(triangles, edges.sharp, context);
-  return as_it_is.clear <= as_it_is.doubtful &&
+  return as_it_is.clear <= as_it_is.doubtful && !is_of_small_pieces(triangles) &&
          kind_of_surface(triangles, edges, context) != SurfaceKind::mechanical_part;
 }
 
