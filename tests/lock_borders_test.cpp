@@ -158,6 +158,35 @@ TEST(LockBorders, AnyNumberOfVerticesIsMet) {
   }
 }
 
+/// Where rows meet the border's vertices two to one, both edges at a corner can be held with one
+/// more on each side.
+TEST(LockBorders, CornersOfSheetsHaveNoStraightAngle) {
+  constexpr Index across = 60;
+  for (const bool turned : {false, true}) {
+    Mesh sheet;
+    for (Index y = 0; y < across; ++y) {
+      for (Index x = 0; x < across; ++x) {
+        const Vec3 p(static_cast<float>(x), static_cast<float>(y), 0);
+        sheet.positions.push_back(p + Vec3(0, 0, 3 * std::sin(p.x() / 9) * std::cos(p.y() / 9)));
+      }
+    }
+    for (Index y = 0; y + 1 < across; ++y) {
+      for (Index x = 0; x + 1 < across; ++x) {
+        const Index a = y * across + x, b = a + 1, c = b + across, d = a + across;
+        sheet.faces.push_back(turned ? std::array{a, b, d} : std::array{a, b, c});
+        sheet.faces.push_back(turned ? std::array{b, c, d} : std::array{a, c, d});
+      }
+    }
+    for (const std::size_t count : {300, 700, 1500}) {
+      SCOPED_TRACE(count);
+      const Mesh result = locked(sheet, OutputFaces::quads, count);
+      const MeshStatistics after = mesh_statistics(result);
+      EXPECT_EQ(after.inverted_quads, 0u);
+      EXPECT_GT(after.jacobian_min, 0.3);
+    }
+  }
+}
+
 TEST(LockBorders, AnOddBorderTakesOneTriangle) {
   RemeshOptions options;
   options.face_count = 1000;

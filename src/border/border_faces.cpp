@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -17,6 +18,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr double straight = 0.8 * pi;  // an angle of a face on the border, or more
+constexpr double bad_corner = 20;      // what a reflex angle costs, and less than a straight one
 
 }  // namespace
 
@@ -162,9 +164,9 @@ bool BorderFaces::divide_anew(Index h) {
   sort_unique(corners);
   if (corners.size() != both.size()) return false;
   const auto parts = best_parts(both);
-  if (parts.empty()) return false;
-  double after = 0;
+  double after = parts.empty() ? std::numeric_limits<double>::infinity() : 0;
   for (const auto& part : parts) after += part_cost(both, part);
+  if (std::min(before, after) > bad_corner && divide_around_hub(h, both)) return true;
   if (!(after < before - by_far)) return false;
   // No vertex inside may be left with two edges.
   for (const Index end : {map_.origin(h), map_.origin(t)}) {
@@ -178,6 +180,21 @@ bool BorderFaces::divide_anew(Index h) {
   map_.remove_edge(h);
   std::size_t next = 0;
   add_chords(both, parts, next, both.back());
+  return true;
+}
+
+/// Of two quads at a corner of the border, of which all vertices but one are held: whatever quads
+/// they become, one has a straight angle. Three around a new vertex have none.
+bool BorderFaces::divide_around_hub(Index h, const std::vector<Index>& both) {
+  if (kind_ != Kind::only_quads || both.size() != 6) return false;
+  std::array<bool, 2> has_straight{false, false};  // of the even vertices, and the others
+  for (std::size_t k = 0; k < 6; ++k) {
+    if (is_straight(both[k])) has_straight[k % 2] = true;
+  }
+  if (has_straight[0] == has_straight[1]) return false;
+  map_.remove_edge(h);
+  add_hub(both);
+  for (std::size_t k = has_straight[0] ? 1 : 0; k < 6; k += 2) map_.remove_edge(map_.prev(both[k]));
   return true;
 }
 

@@ -29,6 +29,7 @@ class BorderFaces {
   void find_near();
   bool is_near(const std::vector<Index>& orbit) const;
   bool divide_anew(Index h);
+  bool divide_around_hub(Index h, const std::vector<Index>& both);
   std::vector<std::vector<std::size_t>> best_parts(const std::vector<Index>& orbit) const;
   void cut_in_two(const std::vector<Index>& orbit);
   double part_cost(const std::vector<Index>& orbit, std::span<const std::size_t> part) const;

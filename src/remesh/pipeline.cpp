@@ -337,6 +337,9 @@ bool Pipeline::fit_lengths_to_borders(double more_faces) {
     if (std::abs(missing - 1) < near_enough) return true;
     (missing > 1 ? low : high) = factor;
   }
+  // Where even that is not enough, hardly any faces are saved by it.
+  constexpr double when_missed = 1.5;
+  if (high == most) fit(when_missed);
   return low > least && high < most;
 }
 
