@@ -126,7 +126,7 @@ TEST(Guides, AreCutIntoTheSurfaceWhichStaysTheSame) {
     EXPECT_TRUE(traced.notes.empty());
     ASSERT_EQ(traced.runs.size(), guides.size());
     Mesh mesh = before;
-    const GuideLines lines = cut_guides(mesh, traced.runs);
+    const GuideLines lines = cut_guides(mesh, traced.runs, Context());
     EXPECT_NEAR(surface_area(mesh), surface_area(before), 1e-5);
     EXPECT_LT(surface_distance(mesh, before, 1, 2000).max, 1e-5);
     EXPECT_LT(surface_distance(before, mesh, 1, 2000).max, 1e-5);

@@ -196,11 +196,11 @@ void run(Arguments& a, Context& context) {
     written.push_back({paths[k], std::move(results[k].report), {}});
     if (summary || !a.report.empty()) written[k].statistics = mesh_statistics(results[k].mesh);
   }
+  bar.clear();
+  if (!a.quiet) print_notes(written);
   if (!a.report.empty()) {
     write_report(a, written, context.threads(), read_seconds, write_seconds, seconds);
   }
-  bar.clear();
-  if (!a.quiet) print_notes(written);
   for (std::size_t k = 0; summary && k < written.size(); ++k) {
     fmt::print(stderr, "{}: {} ({:.2f} s)\n", file_name(written[k].path),
                describe(written[k].statistics), seconds);

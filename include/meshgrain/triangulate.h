@@ -14,7 +14,7 @@ namespace meshgrain {
 /// many vertices that plain fans do. A polygon may come to a vertex again, as around a hole;
 /// triangles that would repeat one are left out. `face_of_triangle`, if wanted, gets the polygon of
 /// each triangle. Takes time linear in the mesh, but within one polygon its corners times its
-/// reflex ones.
+/// reflex ones, and more often than once where it passes through itself.
 Mesh triangulate(const Mesh& polygons, std::vector<Index>* face_of_triangle = nullptr);
 
 }  // namespace meshgrain

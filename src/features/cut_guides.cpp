@@ -24,7 +24,7 @@ constexpr double near_vertex = 0.1, near_line = 0.3;
 
 class Cutting {
  public:
-  explicit Cutting(Mesh& mesh) : mesh_(mesh) {}
+  Cutting(Mesh& mesh, const Context& context) : mesh_(mesh, context) {}
 
   void cut(const GuideRun& run);
   GuideLines result() &&;
@@ -238,8 +238,8 @@ GuideLines Cutting::result() && {
 
 }  // namespace
 
-GuideLines cut_guides(Mesh& surface, std::span<const GuideRun> runs) {
-  Cutting cutting(surface);
+GuideLines cut_guides(Mesh& surface, std::span<const GuideRun> runs, const Context& context) {
+  Cutting cutting(surface, context);
   for (const GuideRun& run : runs) cutting.cut(run);
   return std::move(cutting).result();
 }

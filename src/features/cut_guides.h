@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "features/trace_guides.h"
+#include "meshgrain/context.h"
 
 namespace meshgrain {
 
@@ -20,7 +21,7 @@ struct GuideLines {
 
 /// Cuts guides into a triangle mesh, which stays the same surface: where they cross an edge that is
 /// split, and its faces with it, unless a vertex is so near that it does as well.
-GuideLines cut_guides(Mesh& surface, std::span<const GuideRun> runs);
+GuideLines cut_guides(Mesh& surface, std::span<const GuideRun> runs, const Context& context);
 
 /// Follows a change of the order of vertices: `order` has the old index of each new one.
 void renumber(GuideLines& lines, std::span<const Index> order);

@@ -149,7 +149,7 @@ std::vector<EdgeOfLine> feature_edges(const Mesh& mesh, const FeatureOptions& op
     if (!is_marked) edges.push_back({ends, LineKind::crease});
   }
   if (room > 0) leave_out_fragments_of(mesh, rim, room, edges);
-  return leave_out_creases_beside_lines(mesh, edges, edge_length);
+  return leave_out_creases_beside_lines(mesh, edges, edge_length, context);
 }
 
 FeatureLines find_features(const Mesh& mesh, const FeatureOptions& options,

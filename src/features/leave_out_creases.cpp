@@ -30,17 +30,21 @@ struct Bound {
 };
 constexpr Bound bounds[] = {{0.1, 0.5, true}, {0.25, 5, false}};
 constexpr double farthest = 0.25;
+/// Where so many samples of lines are in a cube as wide as that, hardly another line has room, and
+/// looking at more takes long.
+constexpr std::size_t crowded = 256;
 
 class Leaving {
  public:
   Leaving(const Mesh& mesh, const std::vector<EdgeOfLine>& edges, double edge_length)
-      : mesh_(mesh), edge_length_(edge_length), others_(farthest * edge_length) {
+      : mesh_(mesh), edge_length_(edge_length), others_(farthest * edge_length, crowded) {
     for (const EdgeOfLine& edge : edges) kinds_.emplace(key_of(edge), edge.kind);
     lines_ = chain_edges(mesh, edges, {}, edge_length);
   }
 
-  void run() {
+  void run(const Context& context) {
     for (const Index line : by_rank()) {
+      context.check();
       const std::vector<std::uint8_t> out = beside_others(line);
       for (std::size_t k = 0; k < out.size(); ++k) {
         if (out[k]) {
@@ -99,17 +103,19 @@ class Leaving {
     for_samples(ends, [&](const Point& p) { others_.add({p, along, Point::Zero(), line, 0}); });
   }
 
-  /// How far all of an edge is from other lines that run alike, at most.
+  /// How far all of an edge is from other lines that run alike, at most; what is nearer than all of
+  /// the bounds need not be exact.
   double distance_from_others(const Edge& ends) const {
     const Point along = (point(ends[1]) - point(ends[0])).normalized();
     constexpr double alike = 0.9;
     double most = 0;
     for_samples(ends, [&](const Point& p) {
       double least = std::numeric_limits<double>::infinity();
-      others_.for_near(p, farthest * edge_length_,
+      others_.any_near(p, farthest * edge_length_,
                        [&](const LineSamples::Sample& other, double distance) {
                          const bool runs_alike = std::abs(along.dot(other.direction)) > alike;
                          if (runs_alike) least = std::min(least, distance);
+                         return least < bounds[0].distance * edge_length_;
                        });
       most = std::max(most, least);
     });
@@ -169,12 +175,12 @@ class Leaving {
 
 std::vector<EdgeOfLine> leave_out_creases_beside_lines(const Mesh& mesh,
                                                        const std::vector<EdgeOfLine>& edges,
-                                                       double edge_length) {
+                                                       double edge_length, const Context& context) {
   const bool has_creases = std::ranges::any_of(
       edges, [](const EdgeOfLine& edge) { return edge.kind == LineKind::crease; });
   if (!has_creases || !(edge_length > 0)) return edges;
   Leaving leaving(mesh, edges, edge_length);
-  leaving.run();
+  leaving.run(context);
   std::vector<EdgeOfLine> left;
   std::ranges::copy_if(edges, std::back_inserter(left),
                        [&](const EdgeOfLine& edge) { return leaving.stays(edge); });

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "features/chain_edges.h"
+#include "meshgrain/context.h"
 
 namespace meshgrain {
 
@@ -11,6 +12,6 @@ namespace meshgrain {
 /// over at a border. Borders and marked edges stay, and the longer of two creases.
 std::vector<EdgeOfLine> leave_out_creases_beside_lines(const Mesh& mesh,
                                                        const std::vector<EdgeOfLine>& edges,
-                                                       double edge_length);
+                                                       double edge_length, const Context& context);
 
 }  // namespace meshgrain

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <unordered_map>
 #include <vector>
 
@@ -31,17 +32,30 @@ class LineSamples {
     Index line, number;         ///< Which of its line's samples it is.
   };
 
-  /// `reach`: the largest distance that will be asked for.
-  explicit LineSamples(double reach) : reach_(reach) {}
+  /// `reach`: the largest distance that will be asked for. `most`: in a cube as wide as that;
+  /// others there are left out.
+  explicit LineSamples(double reach, std::size_t most = std::numeric_limits<std::size_t>::max())
+      : reach_(reach), most_(most) {}
 
   void add(const Sample& sample) {
-    cells_[key(cell(sample.position))].push_back(static_cast<Index>(samples_.size()));
+    std::vector<Index>& in_cell = cells_[key(cell(sample.position))];
+    if (in_cell.size() >= most_) return;
+    in_cell.push_back(static_cast<Index>(samples_.size()));
     samples_.push_back(sample);
   }
 
   /// Calls `visit(sample, distance)` for all samples within `radius`, no more than the reach.
   template <typename Visit>
   void for_near(const Eigen::Vector3d& p, double radius, const Visit& visit) const {
+    any_near(p, radius, [&](const Sample& sample, double distance) {
+      visit(sample, distance);
+      return false;
+    });
+  }
+
+  /// Whether `test(sample, distance)` holds of any of these.
+  template <typename Test>
+  bool any_near(const Eigen::Vector3d& p, double radius, const Test& test) const {
     const Cell center = cell(p);
     for (std::int64_t x = -1; x <= 1; ++x) {
       for (std::int64_t y = -1; y <= 1; ++y) {
@@ -50,11 +64,12 @@ class LineSamples {
           if (found == cells_.end()) continue;
           for (const Index s : found->second) {
             const double distance = (samples_[s].position - p).norm();
-            if (distance <= radius) visit(samples_[s], distance);
+            if (distance <= radius && test(samples_[s], distance)) return true;
           }
         }
       }
     }
+    return false;
   }
 
  private:
@@ -70,6 +85,7 @@ class LineSamples {
   }
 
   double reach_;
+  std::size_t most_;
   std::vector<Sample> samples_;
   std::unordered_map<std::uint64_t, std::vector<Index>> cells_;
 };

@@ -88,7 +88,7 @@ std::vector<float> lengths_by_bending(const Hierarchy& hierarchy, const Mesh& su
 /// Circles of holes and shafts need some edges to be circles, however large the other faces are.
 /// Returns whether any of them has made a length shorter.
 bool shorten_around_lines(std::vector<float>& lengths, const Mesh& surface,
-                          const FeatureLines& lines, double face_side) {
+                          const FeatureLines& lines, double face_side, const Context& context) {
   if (lines.empty()) return false;
   constexpr double shortest = 0.25;
   bool any = false;
@@ -98,7 +98,7 @@ bool shorten_around_lines(std::vector<float>& lengths, const Mesh& surface,
     lengths[node] = length;
     any = true;
   };
-  const auto on_border = mark_ends(border_edges(surface), surface.positions.size());
+  const auto on_border = mark_ends(border_edges(surface, context), surface.positions.size());
   // An edge as long as half the radius leaves a circle by what Chords tolerate. Borders are less
   // exact and often ragged: what turns within a face's side is no circle.
   for_each_turn(lines, face_side / 2, [&](Index node, double bend) {
@@ -165,7 +165,7 @@ EdgeLength relative_edge_lengths(const Hierarchy& hierarchy, const Mesh& surface
   } else if (sizing.is_by_value()) {
     multiply_by_values(lengths, surface.values, sizing);
   }
-  const bool is_shortened = shorten_around_lines(lengths, surface, creases, face_side);
+  const bool is_shortened = shorten_around_lines(lengths, surface, creases, face_side, context);
   if (sizing.is_uniform() && !is_shortened) return EdgeLength(1.0f);
   return EdgeLength(std::move(lengths));
 }

@@ -6,8 +6,8 @@
 
 namespace meshgrain {
 
-Splitting::Splitting(Mesh& mesh)
-    : mesh_(mesh), around_(vertex_faces(mesh)), faces_(mesh.faces.size()) {
+Splitting::Splitting(Mesh& mesh, const Context& context)
+    : mesh_(mesh), around_(vertex_faces(mesh, context)), faces_(mesh.faces.size()) {
   for (std::size_t k = 0; k < mesh.marked_edges.size(); ++k) {
     const auto [a, b] = mesh.marked_edges[k];
     marked_[edge_of(a, b)] = k;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mesh/vertex_faces.h"
+#include "meshgrain/context.h"
 #include "meshgrain/mesh.h"
 
 namespace meshgrain {
@@ -16,7 +17,7 @@ namespace meshgrain {
 /// follow. Its memory beside the mesh's own grows with what is split.
 class Splitting {
  public:
-  explicit Splitting(Mesh& mesh);
+  Splitting(Mesh& mesh, const Context& context);
 
   /// The faces around a vertex.
   std::vector<Index> around(Index v) const;

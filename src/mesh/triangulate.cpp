@@ -100,6 +100,7 @@ class EarClipper {
     bool reflex = false;
     bool gone = false;
   };
+  static constexpr std::size_t patience = 100000;  // corners looked at again
   struct Ear {
     double length;
     std::uint32_t corner, version;
@@ -173,7 +174,8 @@ class EarClipper {
 
   bool is_old(Index a, Index b) const { return a == b || edges_.contains(a, b); }
 
-  /// Clips all ears it finds if `ears`, else one corner; returns whether there was any.
+  /// Clips all ears it finds if `ears`, else one corner, after which there may be ears again; of a
+  /// polygon that has often had none all. Returns whether there was any.
   bool pass(bool ears, bool new_edges, std::vector<Triangle>& triangles) {
     std::priority_queue<Ear, std::vector<Ear>, std::greater<>> queue;
     const auto offer = [&](std::uint32_t i) {
@@ -193,7 +195,7 @@ class EarClipper {
       if (ears && !is_ear(ear.corner)) continue;
       clip(ear.corner, triangles);
       any = true;
-      if (!ears) break;
+      if (!ears && ++forced_ * corners_.size() < patience) break;
       offer(c.previous);
       offer(c.next);
     }
@@ -206,6 +208,7 @@ class EarClipper {
   std::vector<Corner> corners_;
   std::vector<std::uint32_t> reflex_;  // all reflex corners, and some that no longer are
   std::size_t clipped_ = 0;            // corners since the list was cleared of those
+  std::size_t forced_ = 0;             // corners clipped that were no ears
 };
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "mesh/vertex_faces.h"
 
 #include <algorithm>
-#include <iterator>
 
 #include "mesh/sort_by_vertex.h"
 #include "meshgrain/error.h"
@@ -23,9 +22,11 @@ VertexFaces vertex_faces(const Mesh& mesh, const Context& context) {
 }
 
 bool share_any(std::span<const Index> a, std::span<const Index> b) {
-  std::vector<Index> common;
-  std::ranges::set_intersection(a, b, std::back_inserter(common));
-  return !common.empty();
+  for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
+    if (*i == *j) return true;
+    ++(*i < *j ? i : j);
+  }
+  return false;
 }
 
 std::vector<Index> vertices_of(const Mesh& mesh, std::span<const Index> faces) {

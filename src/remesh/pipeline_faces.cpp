@@ -33,8 +33,9 @@ std::size_t rounded_up(double faces) {
 }
 
 /// Pairs of neighbouring faces that both touch the border.
-std::vector<std::array<Index, 2>> border_of_faces(const Mesh& surface, const Graph& graph) {
-  const auto on_border = mark_ends(border_edges(surface), surface.positions.size());
+std::vector<std::array<Index, 2>> border_of_faces(const Mesh& surface, const Graph& graph,
+                                                  const Context& context) {
+  const auto on_border = mark_ends(border_edges(surface, context), surface.positions.size());
   const auto touches = [&](Index f) {
     const auto face = surface.faces[f];
     return on_border[face[0]] || on_border[face[1]] || on_border[face[2]];
@@ -230,7 +231,7 @@ Extraction Pipeline::extract(const PositionField& positions) {
     extract.manifold = options_.manifold || !plan_.borders.empty() ||
                        (options_.faces == OutputFaces::hexagons && !cuts_.empty());
   } else {
-    extract.border = border_of_faces(surface_, graph());
+    extract.border = border_of_faces(surface_, graph(), context_);
   }
   Extraction found = extract_mesh(graph(), plan_.orientation, positions, extract, context_);
   if (!nodes_are_vertices_) {

@@ -221,7 +221,7 @@ void Pipeline::lay_guides(double edge_length) {
     for (GuideRun& run : traced.runs)
       (is_hard(run) ? hard : soft_guides_).push_back(std::move(run));
     if (!cut) return;
-    guides_ = cut_guides(surface_, hard);
+    guides_ = cut_guides(surface_, hard, context_);
     is_in_order_ = false;
   });
 }

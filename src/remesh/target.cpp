@@ -163,6 +163,7 @@ double Target::count_ratio(const Mesh& mesh) const {
   const bool split = kind_ == OutputFaces::quads;
   const std::size_t corners = mesh.faces.corners().size();
   const std::size_t faces = split ? corners : mesh.faces.size();
+  if (faces_ > 0) return ratio(faces, 0);
   const std::size_t vertices =
       mesh.positions.size() + (split ? mesh.faces.size() + edges_of(mesh).size() : 0);
   return ratio(faces, vertices);

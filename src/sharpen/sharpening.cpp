@@ -172,7 +172,7 @@ void Sharpening::split() {
   }
   sort_unique(crossed);
   origins_ = before_.positions;
-  Splitting splitting(mesh_);
+  Splitting splitting(mesh_, context_);
   const auto place = [&](Index added, const Point& origin, std::span<const Plane> planes) {
     Point to = origin;
     if (!is_thin(planes)) to += cut_to(far * chamfers_.edge(), meet(origin, planes) - origin);
