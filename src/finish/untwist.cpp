@@ -151,13 +151,15 @@ class Untwisting {
     context_.check();
     if (tries_left_ == 0 || !is_twisted(f)) return;
     const Place place = around(f, rings, price);
-    const std::size_t crossings = count_crossings_of(mesh_, place.faces, context_);
+    if (boxes_.empty()) boxes_ = face_boxes(mesh_, context_);
+    const std::size_t crossings = count_crossings_of(mesh_, place.faces, boxes_, context_);
     const std::size_t twisted = count_twisted(place);
     if (price.is_relaxed) relax(place);
     move(place);
     const std::size_t left = count_twisted(place);
-    if (left < twisted && count_crossings_of(mesh_, place.faces, context_) <=
+    if (left < twisted && count_crossings_of(mesh_, place.faces, boxes_, context_) <=
                               crossings + price.crossings * (twisted - left)) {
+      for (const Index g : place.faces) boxes_[g] = face_box(mesh_, g);
       return;
     }
     for (std::size_t k = 0; k < place.vertices.size(); ++k) {
@@ -226,6 +228,7 @@ class Untwisting {
   std::vector<Stay> stays_;
   float good_ = 0;  // see Price
   std::size_t tries_left_ = 0;
+  std::vector<Eigen::AlignedBox3f> boxes_;  // of all faces, as they are between tries
 };
 
 }  // namespace

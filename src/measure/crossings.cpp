@@ -264,24 +264,28 @@ std::vector<std::array<Index, 2>> find_crossings_of(const Mesh& mesh,
 
 std::size_t count_crossings_of(const Mesh& mesh, std::span<const Index> some,
                                const Context& context) {
-  std::vector<Eigen::AlignedBox3f> boxes;
+  return count_crossings_of(mesh, some, face_boxes(mesh, context), context);
+}
+
+std::size_t count_crossings_of(const Mesh& mesh, std::span<const Index> some,
+                               std::span<const Eigen::AlignedBox3f> boxes, const Context& context) {
+  std::vector<Eigen::AlignedBox3f> own;
   Eigen::AlignedBox3f whole;
-  for (const Index f : some) {
-    boxes.push_back(face_box(mesh, f));
-    whole.extend(boxes.back());
+  std::atomic<std::size_t> count = 0;
+  for (std::size_t k = 0; k < some.size(); ++k) {
+    own.push_back(face_box(mesh, some[k]));
+    whole.extend(own[k]);
+    for (std::size_t i = 0; i < k; ++i) {
+      count += own[i].intersects(own[k]) && cross_if_near(mesh, some[i], some[k]);
+    }
   }
   constexpr std::size_t grain = 4096;
-  std::atomic<std::size_t> count = 0;
   context.for_ranges(mesh.faces.size(), grain, [&](std::size_t begin, std::size_t end) {
     std::size_t here = 0;
     for (auto g = static_cast<Index>(begin); g < end; ++g) {
-      const Eigen::AlignedBox3f box = face_box(mesh, g);
-      if (!box.intersects(whole)) continue;
-      // Pairs of two of them are the second one's to count.
-      const bool is_one_of_them = std::ranges::binary_search(some, g);
+      if (!boxes[g].intersects(whole) || std::ranges::binary_search(some, g)) continue;
       for (std::size_t k = 0; k < some.size(); ++k) {
-        if (is_one_of_them && some[k] >= g) break;
-        here += boxes[k].intersects(box) && cross_if_near(mesh, some[k], g);
+        here += own[k].intersects(boxes[g]) && cross_if_near(mesh, some[k], g);
       }
     }
     count += here;

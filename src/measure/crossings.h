@@ -31,6 +31,11 @@ std::vector<std::array<Index, 2>> find_crossings_of(const Mesh& mesh,
 std::size_t count_crossings_of(const Mesh& mesh, std::span<const Index> some,
                                const Context& context);
 
+/// For who asks often: `boxes` of all faces (face_boxes()), of which those of `some` are not looked
+/// at.
+std::size_t count_crossings_of(const Mesh& mesh, std::span<const Index> some,
+                               std::span<const Eigen::AlignedBox3f> boxes, const Context& context);
+
 /// Where there are so many for each face, a mesh is crumpled: far fewer faces were asked for than
 /// its topology needs, and nothing can be done about them.
 inline constexpr std::size_t hopeless_crossings = 10;

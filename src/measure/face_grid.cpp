@@ -3,6 +3,7 @@
 #include <bit>
 #include <numeric>
 
+#include "util/indices.h"
 #include "util/sum.h"
 
 namespace meshgrain {
@@ -23,6 +24,13 @@ Eigen::AlignedBox3f face_box(const Mesh& mesh, Index f) {
   Eigen::AlignedBox3f box;
   for (const Index v : mesh.faces[f]) box.extend(mesh.positions[v]);
   return box;
+}
+
+std::vector<Eigen::AlignedBox3f> face_boxes(const Mesh& mesh, const Context& context) {
+  std::vector<Eigen::AlignedBox3f> boxes(mesh.faces.size());
+  const auto find = [&](Index f) { boxes[f] = face_box(mesh, f); };
+  for_indices(boxes.size(), find, context);
+  return boxes;
 }
 
 FaceGrid::FaceGrid(const Mesh& mesh, const Context& context) : boxes_(mesh.faces.size()) {

@@ -14,6 +14,9 @@ namespace meshgrain {
 
 Eigen::AlignedBox3f face_box(const Mesh& mesh, Index f);
 
+/// Of all faces.
+std::vector<Eigen::AlignedBox3f> face_boxes(const Mesh& mesh, const Context& context);
+
 /// The faces of a mesh by the cells of a grid that their boxes touch. Those that would touch very
 /// many, as a plate does beside the letters on it, are in coarser grids.
 class FaceGrid {
