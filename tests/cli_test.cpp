@@ -783,6 +783,7 @@ TEST_F(Cli, Picture) {
   expect_refused("picture in.obj", 2, "FILE.png");
   expect_refused("picture in.obj out.jpg", 2, ".png");
   run_well("picture in.obj out.PNG --size 100");
+  run_well("picture in.obj out.PNG --size 100 --view 1 -1.4 -.8");  // no option either
   expect_refused("picture missing.obj out.png", 1, "missing.obj");
   expect_refused("picture in.obj out.png --size 0", 1, "pixels");
 }

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <memory>
 #include <sstream>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "meshgrain/error.h"
@@ -82,13 +84,26 @@ class HelpFormatter : public CLI::Formatter {
   }
 };
 
+/// The last first, as CLI11 wants them; it would take -.5 for an option.
+std::vector<std::string> reversed_arguments(int argc, char** argv) {
+  std::vector<std::string> result;
+  for (int i = argc - 1; i > 0; --i) {
+    std::string argument = argv[i];
+    const bool is_number = argument.size() > 2 && argument.starts_with("-.") &&
+                           argument[2] >= '0' && argument[2] <= '9';
+    if (is_number) argument.insert(1, "0");
+    result.push_back(std::move(argument));
+  }
+  return result;
+}
+
 }  // namespace
 
 bool parse(CLI::App& app, int argc, char** argv) {
   app.formatter(std::make_shared<HelpFormatter>());
   app.get_help_ptr()->description("show this text");
   try {
-    app.parse(argc, argv);
+    app.parse(reversed_arguments(argc, argv));
   } catch (const CLI::CallForHelp&) {
     fmt::print("{}", app.help());
     return false;
