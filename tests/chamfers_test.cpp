@@ -152,6 +152,30 @@ TEST(Chamfers, PartsWithThinHandlesGetTheirCreasesBackToo) {
   EXPECT_NEAR(around / (2 * std::numbers::pi * (0.6 + 0.46)), 1, 0.02);
 }
 
+/// Chamfers of cells that are full or empty have sharp edges on both sides.
+TEST(Chamfers, PartsOfCellsGetTheirCreasesBack) {
+  constexpr int cells = 40;
+  const auto bracket = [](const Point& p) {
+    const double both = std::min(box(p - Point(0, 0, -0.5), Point(0.7, 0.7, 0.25)),
+                                 box(p - Point(-0.45, 0, 0), Point(0.25, 0.7, 0.75)));
+    return both < 0 ? -1.0 : 1.0;
+  };
+  const Mesh surface = made::sampled_on_grid(bracket, cells);
+  Mesh sharp = surface;
+  ASSERT_EQ(sharpen(sharp, 0.05, Context()), Blur::chamfers);
+  std::vector<int> creases(sharp.positions.size(), 0);
+  for (const auto& edge : sharp.marked_edges) {
+    for (const Index v : edge) ++creases[v];
+  }
+  EXPECT_EQ(std::ranges::count(creases, 3), 12);
+  EXPECT_EQ(std::ranges::count(creases, 1), 0);
+  RemeshOptions options;
+  options.face_count = 1500;
+  const MeshStatistics result = mesh_statistics(remesh(surface, options).mesh);
+  EXPECT_LE(result.singularities, 30u);
+  EXPECT_GE(result.jacobian_p01, 0.75);
+}
+
 TEST(Chamfers, AllElseStaysAsItIs) {
   constexpr int cells = 40;
   const auto ball = [](const Point& p) { return p.norm() - 0.7; };

@@ -31,10 +31,32 @@ bool is_evenly_sampled(const Mesh& triangles, const Context& context) {
   return large <= hardly_any * whole;
 }
 
+/// Whether edges are of a few lengths only, as where cells of a grid are full or empty: chamfers of
+/// such have sharp edges themselves, but stand for creases.
+bool has_few_lengths(const Mesh& triangles) {
+  constexpr std::size_t few = 24;
+  constexpr double rounding = 1e-3;
+  std::vector<double> lengths;
+  for (std::size_t f = 0; f < triangles.faces.size(); ++f) {
+    const auto face = triangles.faces[f];
+    for (std::size_t k = 0; k < 3; ++k) {
+      lengths.push_back(
+          (triangles.positions[face[(k + 1) % 3]] - triangles.positions[face[k]]).norm());
+    }
+  }
+  std::ranges::sort(lengths);
+  std::size_t count = 1;
+  for (std::size_t k = 1; k < lengths.size(); ++k) {
+    count += lengths[k] > (1 + rounding) * lengths[k - 1];
+  }
+  return count <= few;
+}
+
 /// How many vertices are not smooth, and how many of these lie at a crease between two smooth
 /// parts, or beside one that does.
 struct RoughVertices {
   std::size_t all = 0, at_creases = 0;
+  std::size_t faces = 0;  // with such corners alone: chamfers have them, creases hardly any
 };
 
 RoughVertices rough_vertices(const Mesh& triangles, const Context& context) {
@@ -67,6 +89,10 @@ RoughVertices rough_vertices(const Mesh& triangles, const Context& context) {
     ++rough.all;
     rough.at_creases += beside_crease[v];
   }
+  const auto is_rough = [&](Index v) { return !chamfers.is_smooth(v) && !near_rim[v]; };
+  for (std::size_t f = 0; f < triangles.faces.size(); ++f) {
+    rough.faces += std::ranges::all_of(triangles.faces[f], is_rough);
+  }
   return rough;
 }
 
@@ -91,13 +117,14 @@ Chamfered chamfered_part(const Mesh& triangles, std::span<const Mesh> samples,
   const RoughVertices rough = rough_vertices(triangles, context);
   if (share(rough) < least_of_some) return Chamfered::no;
   // Bevels that most of the vertices lie on are what the part is, whatever it was sampled on.
-  constexpr double most_rough = 0.25;
+  const bool is_of_cells = 2 * rough.faces > rough.all && has_few_lengths(triangles);
+  const double most_rough = is_of_cells ? 0.6 : 0.25;
   const auto vertices = static_cast<double>(triangles.positions.size());
   if (static_cast<double>(rough.all) > most_rough * vertices) return Chamfered::no;
   const RimAndSharpEdges edges = rim_and_sharp_edges(triangles, flat_degrees, context);
-  if (kind_of_surface(triangles, edges, context) == SurfaceKind::mechanical_part) {
-    return Chamfered::no;
-  }
+  const bool has_creases =
+      kind_of_surface(triangles, edges, context) == SurfaceKind::mechanical_part;
+  if (has_creases && !is_of_cells) return Chamfered::no;
   return share(rough) < least ? Chamfered::perhaps : Chamfered::yes;
 }
 
