@@ -144,6 +144,8 @@ bool Sharpening::turn(Index f, std::size_t k, std::vector<std::uint8_t>& is_take
   const std::size_t at_b = corner_of(u, b);
   const Index beyond = u[(at_b + 2) % 3];
   if (u[(at_b + 1) % 3] != a || are_beside(apex, beyond)) return false;
+  const auto is_it = [&](const Edge& mark) { return edge_of(mark[0], mark[1]) == edge_of(a, b); };
+  if (std::ranges::any_of(mesh_.marked_edges, is_it)) return false;
   const std::array all{apex, a, beyond, b};
   if (std::ranges::any_of(all, [&](Index v) { return is_taken[v] != 0; })) return false;
   const Point up = chamfers_.plane(part_of_[f]).normal;
