@@ -96,6 +96,15 @@ TEST(Chamfers, SurfacesMeetWhereThePartHasItsEdges) {
   EXPECT_LE(off / count, 0.04 * 2.0 / cells);
 }
 
+/// Of each vertex, how many marked edges end there.
+std::vector<int> marks_at(const Mesh& mesh) {
+  std::vector<int> count(mesh.positions.size(), 0);
+  for (const auto& edge : mesh.marked_edges) {
+    for (const Index v : edge) ++count[v];
+  }
+  return count;
+}
+
 /// Where a concave crease comes out between two others, more of the surface is in the way than at
 /// other corners.
 TEST(Chamfers, ConcaveCreasesEndInCorners) {
@@ -116,10 +125,7 @@ TEST(Chamfers, ConcaveCreasesEndInCorners) {
     };
     Mesh surface = made::sampled_on_grid(part, cells);
     ASSERT_EQ(sharpen(surface, 0.05, Context()), Blur::chamfers);
-    std::vector<int> creases(surface.positions.size(), 0);
-    for (const auto& edge : surface.marked_edges) {
-      for (const Index v : edge) ++creases[v];
-    }
+    const std::vector<int> creases = marks_at(surface);
     std::size_t found = 0;
     for (const Point& corner : corners) {
       const Point place = by * (corner - Point(0, 0, 0.3));
@@ -163,10 +169,7 @@ TEST(Chamfers, PartsOfCellsGetTheirCreasesBack) {
   const Mesh surface = made::sampled_on_grid(bracket, cells);
   Mesh sharp = surface;
   ASSERT_EQ(sharpen(sharp, 0.05, Context()), Blur::chamfers);
-  std::vector<int> creases(sharp.positions.size(), 0);
-  for (const auto& edge : sharp.marked_edges) {
-    for (const Index v : edge) ++creases[v];
-  }
+  const std::vector<int> creases = marks_at(sharp);
   EXPECT_EQ(std::ranges::count(creases, 3), 12);
   EXPECT_EQ(std::ranges::count(creases, 1), 0);
   RemeshOptions options;

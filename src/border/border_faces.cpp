@@ -18,7 +18,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr double straight = 0.8 * pi;  // an angle of a face on the border, or more
-constexpr double bad_corner = 20;      // what a reflex angle costs, and less than a straight one
+constexpr double reflex_cost = 20;     // of an angle; one that stays straight costs more
 
 }  // namespace
 
@@ -166,7 +166,7 @@ bool BorderFaces::divide_anew(Index h) {
   const auto parts = best_parts(both);
   double after = parts.empty() ? std::numeric_limits<double>::infinity() : 0;
   for (const auto& part : parts) after += part_cost(both, part);
-  if (std::min(before, after) > bad_corner && divide_around_hub(h, both)) return true;
+  if (std::min(before, after) > reflex_cost && divide_around_hub(h, both)) return true;
   if (!(after < before - by_far)) return false;
   // No vertex inside may be left with two edges.
   for (const Index end : {map_.origin(h), map_.origin(t)}) {
@@ -251,7 +251,7 @@ double BorderFaces::part_cost(const std::vector<Index>& orbit,
     const double a = tangent_angle(positions[vertex(k)], positions[vertex(k + 1)],
                                    positions[vertex(k + n - 1)], normal);
     cost += (a - regular) * (a - regular);
-    if (a > 1.1 * pi) cost += 20;
+    if (a > 1.1 * pi) cost += reflex_cost;
     if (a <= straight || !mesh_.clusters.on_border[vertex(k)]) continue;
     // Between two edges of the border, or nearly along it.
     const bool between = mesh_.holes[PolygonMap::twin(orbit[part[k]])] &&

@@ -1,14 +1,14 @@
 #include "sharpen/sharpen_chamfers.h"
 
+#include "sharpen/chamfer_sharpening.h"
 #include "sharpen/crease_net.h"
-#include "sharpen/sharpening.h"
 
 namespace meshgrain {
 
 std::vector<std::array<Index, 2>> sharpen_chamfers(Mesh& triangles, double shortest, Chamfered part,
                                                    const Context& context) {
   const bool is_certain = part == Chamfered::yes;
-  Sharpening sharpening(triangles, context);
+  ChamferSharpening sharpening(triangles, context);
   // Of thin walls a third was; and of what is no such part some always is.
   const double most_put_back = is_certain ? 0.2 : 0.03;
   if (sharpening.share_put_back() > most_put_back) return {};

@@ -18,12 +18,12 @@ namespace meshgrain {
 
 /// Of a surface whose creases have become chamfers, with them sharp again. It changes the mesh,
 /// which must outlive it.
-class Sharpening {
+class ChamferSharpening {
  public:
   using Point = Eigen::Vector3d;
   using Edge = std::array<Index, 2>;
 
-  Sharpening(Mesh& mesh, const Context& context);
+  ChamferSharpening(Mesh& mesh, const Context& context);
 
   /// The edges between parts that meet in one.
   std::vector<Edge> creases() const;

@@ -4,15 +4,15 @@
 #include <ranges>
 #include <utility>
 
+#include "sharpen/chamfer_sharpening.h"
 #include "sharpen/meet.h"
-#include "sharpen/sharpening.h"
 #include "util/edge_of.h"
 #include "util/sort_unique.h"
 
 namespace meshgrain {
 namespace {
 
-using Point = Sharpening::Point;
+using Point = ChamferSharpening::Point;
 
 constexpr std::size_t grain = 512;
 
@@ -20,7 +20,7 @@ constexpr std::size_t grain = 512;
 
 /// Vertices along creases, where they may have come out of order, and those beside them that have
 /// been moved: first all, then those around which there still are folds.
-void Sharpening::space_out() {
+void ChamferSharpening::space_out() {
   constexpr int rounds = 5, most = 6;
   find_neighbours_on_crease();
   std::vector<Index> moving;
@@ -34,7 +34,7 @@ void Sharpening::space_out() {
   }
 }
 
-void Sharpening::find_neighbours_on_crease() {
+void ChamferSharpening::find_neighbours_on_crease() {
   on_crease_beside_.assign(mesh_.positions.size(), {});
   for (const auto& [a, b] : creases()) {
     on_crease_beside_[a].push_back(b);
@@ -42,14 +42,14 @@ void Sharpening::find_neighbours_on_crease() {
   }
 }
 
-bool Sharpening::may_slide(Index v) const {
+bool ChamferSharpening::may_slide(Index v) const {
   if (stays_[v]) return false;
   if (is_on_[v]) return on_crease_beside_[v].size() == 2;
   return chamfers_.has_part(v) && !chamfers_.is_smooth(v);
 }
 
 /// Half the way to between their neighbours, along what they lie on.
-void Sharpening::slide(std::span<const Index> moving) {
+void ChamferSharpening::slide(std::span<const Index> moving) {
   const auto between = [&](Index v) -> Point {
     return (place(on_crease_beside_[v][0]) + place(on_crease_beside_[v][1])) / 2;
   };
@@ -76,7 +76,7 @@ void Sharpening::slide(std::span<const Index> moving) {
 
 /// Vertices that may slide, up to so many edges from where a crease goes back over itself, or a
 /// face looks away from its part.
-std::vector<Index> Sharpening::near_folds() const {
+std::vector<Index> ChamferSharpening::near_folds() const {
   constexpr int reach = 5;
   std::vector<Index> result;
   for (Index v = 0; v < mesh_.positions.size(); ++v) {
@@ -96,7 +96,7 @@ std::vector<Index> Sharpening::near_folds() const {
 }
 
 /// By all that are so many edges away.
-void Sharpening::grow(std::vector<Index>& vertices, int reach) const {
+void ChamferSharpening::grow(std::vector<Index>& vertices, int reach) const {
   for (int k = 0; k < reach; ++k) {
     for (std::size_t i = vertices.size(); i-- > 0;) {
       for (const Index f : around_[vertices[i]]) {
@@ -110,13 +110,13 @@ void Sharpening::grow(std::vector<Index>& vertices, int reach) const {
 
 /// Edges inside of a part to the other diagonal, beside faces that look away from it: what was one
 /// beside a corner before can lie on both sides of it now.
-void Sharpening::turn_edges() {
+void ChamferSharpening::turn_edges() {
   constexpr int most = 4;
   for (int k = 0; k < most && turn_edges_apart(); ++k) around_ = vertex_faces(mesh_, context_);
 }
 
 /// Those that have nothing to do with each other.
-bool Sharpening::turn_edges_apart() {
+bool ChamferSharpening::turn_edges_apart() {
   const std::size_t before = turns_.size();
   std::vector<std::uint8_t> is_taken(mesh_.positions.size(), 0);
   for (Index f = 0; f < mesh_.faces.size(); ++f) {
@@ -128,7 +128,7 @@ bool Sharpening::turn_edges_apart() {
 }
 
 /// The edge opposite to a corner, if both faces beside it are the better for it.
-bool Sharpening::turn(Index f, std::size_t k, std::vector<std::uint8_t>& is_taken) {
+bool ChamferSharpening::turn(Index f, std::size_t k, std::vector<std::uint8_t>& is_taken) {
   const Corners t = corners_of(f);
   const Index apex = t[k], a = t[(k + 1) % 3], b = t[(k + 2) % 3];
   const auto are_beside = [&](Index v, Index w) {
@@ -162,7 +162,7 @@ bool Sharpening::turn(Index f, std::size_t k, std::vector<std::uint8_t>& is_take
 }
 
 /// The edges that a face got so, if any, and later ones that build on that.
-bool Sharpening::turn_back(Index face) {
+bool ChamferSharpening::turn_back(Index face) {
   std::vector<Index> faces{face};
   std::vector<Edge> gone;
   std::vector<std::size_t> back;

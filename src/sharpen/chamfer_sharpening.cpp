@@ -1,4 +1,4 @@
-#include "sharpen/sharpening.h"
+#include "sharpen/chamfer_sharpening.h"
 
 #include <cmath>
 #include <limits>
@@ -14,8 +14,8 @@
 namespace meshgrain {
 namespace {
 
-using Point = Sharpening::Point;
-using Edge = Sharpening::Edge;
+using Point = ChamferSharpening::Point;
+using Edge = ChamferSharpening::Edge;
 
 constexpr std::size_t grain = 512;
 
@@ -33,7 +33,7 @@ Point cut_to(double length, const Point& way) {
 
 }  // namespace
 
-Sharpening::Sharpening(Mesh& mesh, const Context& context)
+ChamferSharpening::ChamferSharpening(Mesh& mesh, const Context& context)
     : mesh_(mesh),
       before_(mesh),
       context_(context),
@@ -50,7 +50,7 @@ Sharpening::Sharpening(Mesh& mesh, const Context& context)
   keep_apart();
 }
 
-std::vector<Edge> Sharpening::creases() const {
+std::vector<Edge> ChamferSharpening::creases() const {
   const auto is_crease = [&](const InnerEdge& e) {
     const Index a = part_of_[e.left], b = part_of_[e.right];
     return is_on_[e.ends[0]] && is_on_[e.ends[1]] && a != no_index && b != no_index &&
@@ -61,7 +61,7 @@ std::vector<Edge> Sharpening::creases() const {
   return result;
 }
 
-std::size_t Sharpening::loose_ends(std::span<const Edge> creases) const {
+std::size_t ChamferSharpening::loose_ends(std::span<const Edge> creases) const {
   std::vector<Index> ends;
   for (const Edge& edge : creases) ends.insert(ends.end(), edge.begin(), edge.end());
   std::ranges::sort(ends);
@@ -74,7 +74,7 @@ std::size_t Sharpening::loose_ends(std::span<const Edge> creases) const {
   return count;
 }
 
-void Sharpening::give_up_loose() {
+void ChamferSharpening::give_up_loose() {
   constexpr std::size_t short_line = 20;  // edges; a longer one is a crease, though a gap ends it
   constexpr int reach = 2;
   std::vector<Index> given_up;
@@ -103,7 +103,7 @@ void Sharpening::give_up_loose() {
 }
 
 /// Those of chamfers onto their parts, and of those near to a crease the nearest ones onto it.
-void Sharpening::move_vertices() {
+void ChamferSharpening::move_vertices() {
   struct Move {
     double way = std::numeric_limits<double>::infinity();
     Point to;
@@ -144,7 +144,7 @@ void Sharpening::move_vertices() {
 
 /// Creases at the nearer end of each edge of it that they would cross: no vertex may be put in
 /// there.
-void Sharpening::end_at_rim() {
+void ChamferSharpening::end_at_rim() {
   for (const auto& [a, b] : rim_) {
     if (!is_crossed(a, b)) continue;
     const std::array planes{chamfers_.plane(a), chamfers_.plane(b)};
@@ -156,7 +156,7 @@ void Sharpening::end_at_rim() {
 }
 
 /// Edges that a crease crosses, and faces in which three meet.
-void Sharpening::split() {
+void ChamferSharpening::split() {
   std::vector<Edge> crossed;
   std::vector<Index> with_corner;
   for (Index f = 0; f < before_.faces.size(); ++f) {
@@ -198,7 +198,7 @@ void Sharpening::split() {
 
 /// A face is of the part of its corners that are not on a crease; one that has none is of that of a
 /// face beside it.
-void Sharpening::find_parts_of_faces() {
+void ChamferSharpening::find_parts_of_faces() {
   part_of_.assign(mesh_.faces.size(), no_index);
   std::vector<Index> open;
   for (Index f = 0; f < part_of_.size(); ++f) {
@@ -225,7 +225,7 @@ void Sharpening::find_parts_of_faces() {
 }
 
 /// The one that looks most the way that the face does.
-Index Sharpening::part_beside(Index f) const {
+Index ChamferSharpening::part_beside(Index f) const {
   const auto c = std::as_const(mesh_.faces)[f];
   const auto at = [&](std::size_t k) -> Point { return mesh_.positions[c[k]].cast<double>(); };
   const Point normal = (at(1) - at(0)).cross(at(2) - at(0));
@@ -246,7 +246,7 @@ Index Sharpening::part_beside(Index f) const {
 }
 
 /// Planes that touch the parts around a vertex, one of those that would meet in no crease.
-std::vector<Plane> Sharpening::parts_around(Index v) const {
+std::vector<Plane> ChamferSharpening::parts_around(Index v) const {
   std::vector<Plane> planes;
   for (const Index f : around_[v]) {
     if (part_of_[f] == no_index) continue;
@@ -258,7 +258,7 @@ std::vector<Plane> Sharpening::parts_around(Index v) const {
 }
 
 /// Vertices on creases around which three parts or more meet.
-void Sharpening::place_corners() {
+void ChamferSharpening::place_corners() {
   context_.for_ranges(mesh_.positions.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (auto v = static_cast<Index>(begin); v < end; ++v) {
       if (!is_on_[v] || stays_[v]) continue;
@@ -274,7 +274,7 @@ void Sharpening::place_corners() {
 
 /// Puts vertices back at which the surface would pass through itself, as where it has a gap or a
 /// wall hardly wider than a chamfer.
-void Sharpening::keep_apart() {
+void ChamferSharpening::keep_apart() {
   constexpr double deep = 0.05;  // edges; slivers side by side may seem to cross a little
   for (bool changed = true; changed;) {
     changed = false;
