@@ -140,6 +140,7 @@ Made make(Mesh input, const RemeshOptions& options, const std::optional<Wanted>&
             .seamed = std::move(seamed),
             .has_marks = pipeline.has_marks() || pipeline.is_sharpened(),
             .was_marked = pipeline.was_marked(),
+            .roundings = pipeline.roundings(),
             .cuts = pipeline.cuts(),
             .room_for_creases = pipeline.room_for_creases()};
   made.follows_creases = made.faults.inverted > 0 && pipeline.follows_creases();
@@ -180,6 +181,7 @@ RemeshResult remesh_whole(Mesh input, const RemeshOptions& options, const Contex
     attempt(try_pieces_apart, made, options, context);
     attempt(try_more_faces, made, options, context);
   }
+  round_again(made.result.mesh, made.roundings, context);
   note_faults(made.result, made.faults);
   return std::move(made.result);
 }

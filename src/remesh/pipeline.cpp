@@ -491,6 +491,13 @@ void Pipeline::change_target(const RemeshOptions& options) {
   orient();
 }
 
+Roundings Pipeline::roundings() const {
+  Roundings roundings = roundings_;
+  leave(frame_, roundings.triangles);
+  roundings.widest *= frame_.scale;
+  return roundings;
+}
+
 RemeshReport Pipeline::report() const {
   RemeshReport report = result_.report;
   report.notes = plan_.notes;
@@ -502,6 +509,7 @@ RemeshReport Pipeline::report() const {
 RemeshResult Pipeline::take_mesh(const RemeshReport& prepared) {
   RemeshResult level;
   level.mesh = std::move(made_.extraction.mesh);
+  round_again(level.mesh, roundings_, context_);
   leave(frame_, level.mesh);
   level.report = report();
   result_.report = prepared;

@@ -53,6 +53,7 @@ Made Remaking::made_of(Mesh surface, const RemeshOptions& options, const Made& b
   other.notes = before.notes;
   other.notes.push_back(note);
   report.notes.insert(report.notes.begin(), other.notes.begin(), other.notes.end());
+  other.roundings.add(before.roundings);
   times_.insert(times_.end(), report.stages.begin(), report.stages.end());
   return other;
 }

@@ -11,6 +11,7 @@
 #include "meshgrain/remesh.h"
 #include "remesh/flaws.h"
 #include "remesh/stages.h"
+#include "sharpen/round_again.h"
 
 namespace meshgrain {
 
@@ -23,6 +24,7 @@ struct Made {
   Mesh seamed;                     // the input, if seams may be joined; else empty
   bool has_marks = false;          // besides those of creases that were found
   bool was_marked = false;         // the input
+  Roundings roundings;             // of the input, which are sharp so far
   Cuts cuts;                       // of the surface that was remeshed
   double room_for_creases = 0;     // those with less were left out (see Pipeline)
   bool follows_creases = false;    // that nobody asked for; only told if faces are inverted

@@ -1,13 +1,23 @@
 #include "remesh/sharpen_part.h"
 
+#include <utility>
+
+#include "sharpen/narrow_bends.h"
 #include "sharpen/sharpen.h"
 
 namespace meshgrain {
+namespace {
+
+bool may_sharpen(const RemeshOptions& options) {
+  return options.features.creases == Creases::automatic &&
+         options.graph.nodes == GraphNodes::vertices;  // others have no lines
+}
+
+}  // namespace
 
 bool sharpen_part(Mesh& triangles, const RemeshOptions& options, double face_side,
                   std::vector<std::string>& notes, const Context& context) {
-  if (options.features.creases != Creases::automatic) return false;
-  if (options.graph.nodes != GraphNodes::vertices) return false;  // these have no lines
+  if (!may_sharpen(options)) return false;
   switch (sharpen(triangles, face_side, context)) {
     case Blur::none:
       return false;
@@ -22,6 +32,28 @@ bool sharpen_part(Mesh& triangles, const RemeshOptions& options, double face_sid
       return true;
   }
   return false;
+}
+
+bool sharpen_bends(Mesh& triangles, const RemeshOptions& options, double face_side,
+                   Roundings* roundings, std::vector<std::string>& notes, const Context& context) {
+  if (!may_sharpen(options)) return false;
+  constexpr double narrow = 0.5, chamfer = 0.2;  // of a side
+  bool any = false;
+  for (const double width : {narrow, 1.0, 2.0}) {
+    if (width > narrow && roundings == nullptr) break;
+    Mesh bent = sharpen_bends(
+        triangles, {.chamfer = chamfer * face_side, .rounding = width * face_side}, context);
+    if (bent.faces.empty()) continue;
+    any = true;
+    if (width == narrow) {
+      notes.emplace_back(
+          "made sharp edges of chamfers and roundings far narrower than a face (-c off leaves "
+          "them)");
+    } else {
+      roundings->add({std::move(bent), width * face_side});
+    }
+  }
+  return any;
 }
 
 }  // namespace meshgrain
