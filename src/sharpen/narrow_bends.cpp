@@ -358,7 +358,7 @@ class NarrowBends {
       bend.vertices += places_[k].members.size();
       if (!places_[k].may_go) bend.staying += places_[k].members.size();
     }
-    constexpr std::size_t few = 5;  // one of as many
+    constexpr std::size_t few = 3;  // one of as many
     constexpr double longer = 2;
     for (Index k = 0; k < places_.size(); ++k) {
       const Bend& bend = bends[sets.find(k)];
