@@ -109,9 +109,12 @@ class NarrowBends {
     std::vector<double> turns;  // over the width of a narrow bend
     std::vector<double> most(mesh_.positions.size(), bend);
     for (const auto& [a, b] : edges) {
-      const double length = (mesh_.positions[b] - mesh_.positions[a]).norm();
+      const Vec3 way = mesh_.positions[b] - mesh_.positions[a], change = normals[b] - normals[a];
       const double cosine = std::clamp<double>(normals[a].dot(normals[b]), -1, 1);
-      turns.push_back(length > 0 ? std::acos(cosine) * widths_.rounding / length : 0);
+      // Askew, normals change in another direction.
+      constexpr float straight = 0.9f;
+      const bool is_across = std::abs(way.dot(change)) > straight * way.norm() * change.norm();
+      turns.push_back(is_across ? std::acos(cosine) * widths_.rounding / way.norm() : 0);
       for (const Index v : {a, b}) most[v] = std::max(most[v], turns.back());
     }
     UnionFind sets(mesh_.positions.size()), close_sets(mesh_.positions.size());
