@@ -37,7 +37,7 @@ bool sharpen_part(Mesh& triangles, const RemeshOptions& options, double face_sid
 bool sharpen_bends(Mesh& triangles, const RemeshOptions& options, double face_side,
                    Roundings* roundings, std::vector<std::string>& notes, const Context& context) {
   if (!may_sharpen(options)) return false;
-  constexpr double narrow = 0.5, chamfer = 0.2;  // of a side
+  constexpr double narrow = 0.5, chamfer = 0.3;  // of a side
   bool any = false;
   for (const double width : {narrow, 1.0, 2.0}) {
     if (width > narrow && roundings == nullptr) break;
