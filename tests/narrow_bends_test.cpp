@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "has_note.h"
+#include "kept_creases.h"
 #include "made_box.h"
 #include "measure/bvh.h"
 #include "measure/crossings.h"
@@ -34,6 +35,34 @@ double largest_distance(const Mesh& from, const Mesh& to) {
   double most = 0;
   for (const Vec3& p : from.positions) most = std::max(most, distance(tree, p));
   return most;
+}
+
+/// A plate whose upright edges are rounded, and no others.
+Mesh rounded_plate(float radius, Index segments) {
+  Mesh mesh;
+  std::vector<Index> top, bottom;
+  for (Index quarter = 0; quarter < 4; ++quarter) {
+    const Vec3 corner(quarter == 0 || quarter == 3 ? 1.f : -1.f, quarter < 2 ? 0.7f : -0.7f, 0);
+    for (Index i = 0; i <= segments; ++i) {
+      const auto angle =
+          static_cast<float>(std::numbers::pi / 2 * (quarter + double(i) / segments));
+      const Vec3 out(std::cos(angle), std::sin(angle), 0);
+      const Vec3 inner =
+          corner - radius * Vec3(corner.x() > 0 ? 1 : -1, corner.y() > 0 ? 1 : -1, 0);
+      top.push_back(static_cast<Index>(mesh.positions.size()));
+      mesh.positions.push_back(inner + radius * out + Vec3(0, 0, 0.2f));
+      bottom.push_back(static_cast<Index>(mesh.positions.size()));
+      mesh.positions.push_back(inner + radius * out - Vec3(0, 0, 0.2f));
+    }
+  }
+  for (std::size_t i = 0; i < top.size(); ++i) {
+    const std::size_t next = (i + 1) % top.size();
+    mesh.faces.push_back({top[i], bottom[i], bottom[next], top[next]});
+  }
+  mesh.faces.push_back(top);
+  std::ranges::reverse(bottom);
+  mesh.faces.push_back(bottom);
+  return triangulate(mesh);
 }
 
 RemeshResult remeshed(const Mesh& mesh, std::size_t faces) {
@@ -125,6 +154,16 @@ TEST(NarrowBends, RowsRunAlongRoundingsAsWideAsFaces) {
     // Nothing is cut off: the middle of each rounding has vertices or edges near.
     EXPECT_LT(largest_distance(input, result.mesh), 0.35 * radius);
   }
+}
+
+TEST(NarrowBends, RoundingsMayEndAtSharpEdges) {
+  const float radius = 0.07f;
+  const Mesh input = rounded_plate(radius, 6);
+  const RemeshResult result = remeshed(input, 1500);
+  made::expect_same_topology(mesh_statistics(result.mesh), mesh_statistics(input));
+  EXPECT_GT(least_jacobian(result.mesh), 0.4f);
+  EXPECT_LT(largest_distance(result.mesh, input), 0.1 * radius);
+  EXPECT_GT(made::kept_creases(input, result.mesh).creases, 0.9);
 }
 
 TEST(NarrowBends, OnlyWhatIsOverARoundingGoesBackToIt) {

@@ -1,7 +1,8 @@
 #include "remesh/sharpen_part.h"
 
-#include <utility>
+#include <algorithm>
 
+#include "mesh/part.h"
 #include "sharpen/narrow_bends.h"
 #include "sharpen/sharpen.h"
 
@@ -11,6 +12,23 @@ namespace {
 bool may_sharpen(const RemeshOptions& options) {
   return options.features.creases == Creases::automatic &&
          options.graph.nodes == GraphNodes::vertices;  // others have no lines
+}
+
+/// The triangles that have all of their corners at some positions.
+Mesh with_corners_at(const std::vector<Vec3>& positions, const Mesh& triangles) {
+  const auto comes_before = [](const Vec3& a, const Vec3& b) {
+    return std::ranges::lexicographical_compare(a, b);
+  };
+  std::vector<Vec3> sorted = positions;
+  std::ranges::sort(sorted, comes_before);
+  const auto is_there = [&](Index v) {
+    return std::ranges::binary_search(sorted, triangles.positions[v], comes_before);
+  };
+  std::vector<Index> faces;
+  for (Index f = 0; f < triangles.faces.size(); ++f) {
+    if (std::ranges::all_of(triangles.faces[f], is_there)) faces.push_back(f);
+  }
+  return part_of(triangles, faces).mesh;
 }
 
 }  // namespace
@@ -38,10 +56,11 @@ bool sharpen_bends(Mesh& triangles, const RemeshOptions& options, double face_si
                    Roundings* roundings, std::vector<std::string>& notes, const Context& context) {
   if (!may_sharpen(options)) return false;
   constexpr double narrow = 0.5, chamfer = 0.3;  // of a side
+  const std::vector<Vec3> positions = triangles.positions;
   bool any = false;
   for (const double width : {narrow, 1.0, 2.0}) {
     if (width > narrow && roundings == nullptr) break;
-    Mesh bent = sharpen_bends(
+    const Mesh bent = sharpen_bends(
         triangles, {.chamfer = chamfer * face_side, .rounding = width * face_side}, context);
     if (bent.faces.empty()) continue;
     any = true;
@@ -50,7 +69,8 @@ bool sharpen_bends(Mesh& triangles, const RemeshOptions& options, double face_si
           "made sharp edges of chamfers and roundings far narrower than a face (-c off leaves "
           "them)");
     } else {
-      roundings->add({std::move(bent), width * face_side});
+      // Others lead to where a narrower bend was made sharp before.
+      roundings->add({with_corners_at(positions, bent), width * face_side});
     }
   }
   return any;

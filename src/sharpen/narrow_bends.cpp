@@ -76,6 +76,20 @@ class NarrowBends {
 
   const VertexMerging& merging() const { return merging_; }
 
+  /// The triangles of those that go; not those in the plane of a side, as beside where one ends.
+  std::vector<Index> bent_faces() const {
+    std::vector<Index> faces;
+    for (const Place& place : merging_.places()) {
+      if (!place.may_go) continue;
+      const std::vector<Vec3> sides = side_normals(place);
+      merging_.for_each_corner(place.members, [&](const Corner& corner) {
+        if (is_bent(corner, sides)) faces.push_back(corner.face);
+      });
+    }
+    sort_unique(faces);
+    return faces;
+  }
+
  private:
   /// Those that edges join along which normals turn as fast as on a bend that narrow, and not much
   /// faster along others from there: a bend along a curve turns that way, too.
@@ -134,22 +148,29 @@ class NarrowBends {
     return folds.are_of_rounding() || (is_close && folds.are_of_chamfer());
   }
 
-  Folds folds_of(const Place& place) const {
-    std::vector<Vec3> sides;
-    merging_.for_each_side(place,
-                           [&](const Corner& corner) { sides.push_back(merging_.normal(corner)); });
-    const auto angle = [](const Vec3& m, const Vec3& n) -> double {
-      return std::acos(std::clamp(m.dot(n), -1.0f, 1.0f));
-    };
+  std::vector<Vec3> side_normals(const Place& place) const {
+    std::vector<Vec3> normals;
+    merging_.for_each_side(
+        place, [&](const Corner& corner) { normals.push_back(merging_.normal(corner)); });
+    return normals;
+  }
+
+  static double angle(const Vec3& m, const Vec3& n) {
+    return std::acos(std::clamp(m.dot(n), -1.0f, 1.0f));
+  }
+
+  /// Whether a triangle is in the plane of none of the sides.
+  bool is_bent(const Corner& corner, std::span<const Vec3> sides) const {
     constexpr double in_plane = 3 * degree;
-    const auto is_bent = [&](const Corner& corner) {
-      const Vec3 here = merging_.normal(corner);
-      return std::ranges::none_of(sides,
-                                  [&](const Vec3& side) { return angle(here, side) < in_plane; });
-    };
+    const Vec3 here = merging_.normal(corner);
+    return std::ranges::none_of(sides, [&](const Vec3& n) { return angle(here, n) < in_plane; });
+  }
+
+  Folds folds_of(const Place& place) const {
+    const std::vector<Vec3> sides = side_normals(place);
     Folds folds;
     merging_.for_each_fold(place, [&](const Corner& corner, const Corner& after) {
-      const int bent = is_bent(corner) + is_bent(after);
+      const int bent = is_bent(corner, sides) + is_bent(after, sides);
       if (bent == 0) return;
       double& most = bent == 2 ? folds.inner : folds.outer;
       most = std::max(most, angle(merging_.normal(corner), merging_.normal(after)));
@@ -273,15 +294,15 @@ Mesh sharpen_bends(Mesh& triangles, const BendWidths& widths, const Context& con
   const std::vector<Ends> edges = short_edges(triangles, widths.rounding, context);
   if (edges.empty()) return {};
   const NarrowBends bends(triangles, edges, widths, context);
-  const std::vector<Index> across = bends.merging().faces_that_go();
-  if (across.empty()) return {};
+  const std::vector<Index> bent_faces = bends.bent_faces();
+  if (bent_faces.empty()) return {};
   Mesh sharp = triangles;
   bends.merging().merge(sharp);
   clean(sharp, context);
   // Of sculptures these are details like any.
   const RimAndSharpEdges sharp_edges = rim_and_sharp_edges(sharp, flat_degrees, context);
   if (kind_of_surface(sharp, sharp_edges, context) == SurfaceKind::sculpture) return {};
-  Mesh bent = part_of(triangles, across).mesh;
+  Mesh bent = part_of(triangles, bent_faces).mesh;
   triangles = std::move(sharp);
   return bent;
 }

@@ -13,7 +13,7 @@ struct BendWidths {
 
 /// Makes sharp creases of the narrow chamfers and roundings of a mechanical part: what lies across
 /// one becomes a vertex where the sides beyond it meet. Topology and border stay, and so does what
-/// cannot go without turning the sides. Returns the triangles that went, as they were.
+/// cannot go without turning the sides. Returns the triangles that were bent, as they were.
 Mesh sharpen_bends(Mesh& triangles, const BendWidths& widths, const Context& context);
 
 }  // namespace meshgrain

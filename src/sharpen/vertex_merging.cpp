@@ -114,18 +114,6 @@ bool VertexMerging::has_one_ring(std::span<const Index> members) const {
   return steps == sides;
 }
 
-std::vector<Index> VertexMerging::faces_that_go() const {
-  std::vector<Index> faces;
-  for (const Place& place : places_) {
-    if (!place.may_go) continue;
-    for_each_corner(place.members, [&](const Corner& corner) {
-      if (!is_side(corner)) faces.push_back(corner.face);
-    });
-  }
-  sort_unique(faces);
-  return faces;
-}
-
 void VertexMerging::merge(Mesh& copy) const {
   for (const Place& place : places_) {
     if (place.may_go) copy.positions[place.members[0]] = place.at;

@@ -94,8 +94,6 @@ class VertexMerging {
   /// Whether sides will look where they do, and what leads from them to places that stay nearly.
   bool turns_no_side(const Place& place) const;
 
-  /// The triangles of places that go.
-  std::vector<Index> faces_that_go() const;
   /// Leaves a copy of the mesh triangles without area, which clean() takes out.
   void merge(Mesh& copy) const;
 
