@@ -19,6 +19,7 @@
 #include "remesh/try_no_creases.h"
 #include "remesh/try_pieces_apart.h"
 #include "remesh/try_simpler_topology.h"
+#include "sharpen/round_again.h"
 #include "symmetry/remesh_symmetric.h"
 
 namespace meshgrain {

@@ -12,11 +12,9 @@
 #include "measure/bvh.h"
 #include "measure/crossings.h"
 #include "measure/face_shape.h"
-#include "mesh/border.h"
 #include "meshgrain/remesh.h"
 #include "meshgrain/shapes.h"
 #include "meshgrain/statistics.h"
-#include "meshgrain/surface.h"
 #include "same_topology.h"
 #include "sharpen/round_again.h"
 
@@ -37,23 +35,15 @@ double largest_distance(const Mesh& from, const Mesh& to) {
   return most;
 }
 
-/// A plate whose upright edges are rounded, and no others.
-Mesh rounded_plate(float radius, Index segments) {
+/// A polygon, counter-clockwise, as high as it says.
+Mesh prism(const std::vector<Eigen::Vector2f>& profile, float height) {
   Mesh mesh;
   std::vector<Index> top, bottom;
-  for (Index quarter = 0; quarter < 4; ++quarter) {
-    const Vec3 corner(quarter == 0 || quarter == 3 ? 1.f : -1.f, quarter < 2 ? 0.7f : -0.7f, 0);
-    for (Index i = 0; i <= segments; ++i) {
-      const auto angle =
-          static_cast<float>(std::numbers::pi / 2 * (quarter + double(i) / segments));
-      const Vec3 out(std::cos(angle), std::sin(angle), 0);
-      const Vec3 inner =
-          corner - radius * Vec3(corner.x() > 0 ? 1 : -1, corner.y() > 0 ? 1 : -1, 0);
-      top.push_back(static_cast<Index>(mesh.positions.size()));
-      mesh.positions.push_back(inner + radius * out + Vec3(0, 0, 0.2f));
-      bottom.push_back(static_cast<Index>(mesh.positions.size()));
-      mesh.positions.push_back(inner + radius * out - Vec3(0, 0, 0.2f));
-    }
+  for (const Eigen::Vector2f& p : profile) {
+    bottom.push_back(static_cast<Index>(mesh.positions.size()));
+    mesh.positions.emplace_back(p.x(), p.y(), 0);
+    top.push_back(static_cast<Index>(mesh.positions.size()));
+    mesh.positions.emplace_back(p.x(), p.y(), height);
   }
   for (std::size_t i = 0; i < top.size(); ++i) {
     const std::size_t next = (i + 1) % top.size();
@@ -63,6 +53,37 @@ Mesh rounded_plate(float radius, Index segments) {
   std::ranges::reverse(bottom);
   mesh.faces.push_back(bottom);
   return triangulate(mesh);
+}
+
+/// From one angle to another, in quarters of a turn.
+void add_arc(std::vector<Eigen::Vector2f>& profile, const Eigen::Vector2f& center, float radius,
+             int from, int to, int segments = 6) {
+  for (int i = 0; i <= segments; ++i) {
+    const double turn = from + (to - from) * static_cast<double>(i) / segments;
+    const auto angle = static_cast<float>(std::numbers::pi / 2 * turn);
+    profile.push_back(center + radius * Eigen::Vector2f(std::cos(angle), std::sin(angle)));
+  }
+}
+
+/// A plate whose upright edges are rounded, and no others.
+Mesh rounded_plate(float radius) {
+  const float x = 1 - radius, y = 0.7f - radius;
+  std::vector<Eigen::Vector2f> profile;
+  add_arc(profile, {x, y}, radius, 0, 1);
+  add_arc(profile, {-x, y}, radius, 1, 2);
+  add_arc(profile, {-x, -y}, radius, 2, 3);
+  add_arc(profile, {x, -y}, radius, 3, 4);
+  return prism(profile, 0.4f);
+}
+
+/// A sheet bent to an L.
+Mesh bent_sheet(float thickness, float inner_radius) {
+  const float outer = inner_radius + thickness;
+  std::vector<Eigen::Vector2f> profile{{1, 0}, {1, thickness}};
+  add_arc(profile, {outer, outer}, inner_radius, 3, 2);
+  profile.insert(profile.end(), {{thickness, 1}, {0, 1}});
+  add_arc(profile, {outer, outer}, outer, 2, 3);
+  return prism(profile, 0.8f);
 }
 
 RemeshResult remeshed(const Mesh& mesh, std::size_t faces) {
@@ -104,6 +125,11 @@ TEST(NarrowBends, ChamfersStayWhereRoundingsAsWideGo) {
   EXPECT_FALSE(sharpen_bends(round, widths, Context(2)).faces.empty());
 }
 
+TEST(NarrowBends, WideChamfersOfTwoStripsStay) {
+  Mesh mesh = made::rounded_box({1, 0.5f, 0.2f}, 0.05f, 2);
+  EXPECT_TRUE(sharpen_bends(mesh, {.chamfer = 0.045, .rounding = 0.15}, Context(2)).faces.empty());
+}
+
 TEST(NarrowBends, ThinPlatesAreNotFlattened) {
   Mesh plate = made::rounded_box({1, 0.5f, 0.01f}, 0.002f, 3);
   sharpen_bends(plate, {.chamfer = 0.05, .rounding = 0.05}, Context(2));
@@ -142,6 +168,7 @@ TEST(NarrowBends, BoxesWithNarrowChamfersBecomeBoxes) {
   EXPECT_FALSE(made::has_note(remesh(input, options), note));
 }
 
+// Where they do not, faces cut off more of the edges: of these 5 and 2.2 times as much.
 TEST(NarrowBends, RowsRunAlongRoundingsAsWideAsFaces) {
   for (const float radius : {0.05f, 0.1f}) {
     SCOPED_TRACE(radius);
@@ -151,14 +178,17 @@ TEST(NarrowBends, RowsRunAlongRoundingsAsWideAsFaces) {
     made::expect_same_topology(mesh_statistics(result.mesh), mesh_statistics(input));
     EXPECT_GT(least_jacobian(result.mesh), 0.4f);
     EXPECT_LT(largest_distance(result.mesh, input), 0.1 * radius);
-    // Nothing is cut off: the middle of each rounding has vertices or edges near.
-    EXPECT_LT(largest_distance(input, result.mesh), 0.35 * radius);
+    RemeshOptions without;
+    without.face_count = 1000;
+    without.features.creases = Creases::none;
+    const double as_before = largest_distance(input, remesh(input, without).mesh);
+    EXPECT_LT(2 * largest_distance(input, result.mesh), as_before);
   }
 }
 
 TEST(NarrowBends, RoundingsMayEndAtSharpEdges) {
   const float radius = 0.07f;
-  const Mesh input = rounded_plate(radius, 6);
+  const Mesh input = rounded_plate(radius);
   const RemeshResult result = remeshed(input, 1500);
   made::expect_same_topology(mesh_statistics(result.mesh), mesh_statistics(input));
   EXPECT_GT(least_jacobian(result.mesh), 0.4f);
@@ -166,11 +196,22 @@ TEST(NarrowBends, RoundingsMayEndAtSharpEdges) {
   EXPECT_GT(made::kept_creases(input, result.mesh).creases, 0.9);
 }
 
+TEST(NarrowBends, BothSidesOfABentSheetAreRoundedAgain) {
+  for (const float radius : {0.03f, 0.06f}) {
+    SCOPED_TRACE(radius);
+    const Mesh input = bent_sheet(0.04f, radius);
+    const RemeshResult result = remeshed(input, 2000);
+    made::expect_same_topology(mesh_statistics(result.mesh), mesh_statistics(input));
+    EXPECT_TRUE(find_crossings(result.mesh, Context(2)).empty());
+    EXPECT_GT(least_jacobian(result.mesh), 0.2f);
+    EXPECT_LT(largest_distance(result.mesh, input), 0.3 * radius);
+  }
+}
+
 TEST(NarrowBends, OnlyWhatIsOverARoundingGoesBackToIt) {
   const Mesh input = made::rounded_box(half, 0.1f, 6);
   Mesh sharp = input;
-  const Roundings roundings{sharpen_bends(sharp, {.chamfer = 0, .rounding = 0.15}, Context(2)),
-                            0.15};
+  const Mesh roundings = sharpen_bends(sharp, {.chamfer = 0, .rounding = 0.15}, Context(2));
   const RemeshResult result = remeshed(sharp, 2000);
   Mesh round = result.mesh;
   round_again(round, roundings, Context(2));

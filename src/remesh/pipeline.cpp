@@ -28,6 +28,7 @@
 #include "meshgrain/surface.h"
 #include "remesh/flattened_share.h"
 #include "remesh/holes_and_pieces.h"
+#include "sharpen/round_again.h"
 
 namespace meshgrain {
 
@@ -491,10 +492,10 @@ void Pipeline::change_target(const RemeshOptions& options) {
   orient();
 }
 
-Roundings Pipeline::roundings() const {
-  Roundings roundings = roundings_;
-  leave(frame_, roundings.triangles);
-  roundings.widest *= frame_.scale;
+Mesh Pipeline::roundings() const {
+  Mesh roundings = roundings_;
+  leave(frame_, roundings);
+  for (float& value : roundings.values) value = static_cast<float>(value * frame_.scale);
   return roundings;
 }
 

@@ -27,7 +27,6 @@
 #include "remesh/inherent_crossings.h"
 #include "remesh/stages.h"
 #include "remesh/target.h"
-#include "sharpen/round_again.h"
 
 namespace meshgrain {
 
@@ -127,8 +126,8 @@ class Pipeline {
   /// Whether the input has.
   bool was_marked() const { return was_marked_; }
   bool is_sharpened() const { return is_sharpened_; }
-  /// Of the input, which are sharp so far.
-  Roundings roundings() const;
+  /// Of the input, which are sharp so far (see round_again()).
+  Mesh roundings() const;
   /// The mean side of a face, in input units.
   double face_side() const { return plan_.target.face_side(area_) * frame_.scale; }
 
@@ -360,7 +359,7 @@ class Pipeline {
   bool is_in_order_ = false;        // the surface, since it was read
   bool was_marked_ = false;         // the input
   bool is_sharpened_ = false;
-  Roundings roundings_;        // of the surface, which are sharp
+  Mesh roundings_;             // of the surface, which are sharp
   bool is_coarsened_ = false;  // its creases are marked since then, and
   bool had_marks_ = false;     // others were before
   bool is_seamed_ = false;     // much of its border

@@ -119,12 +119,12 @@ void Pipeline::sharpen() {
     input_size_ = surface_size(surface_, context_);
     const double side = plan_.target.face_side(input_size_.area);
     is_sharpened_ = sharpen_part(surface_, options_, side, plan_.notes, context_);
-    // Where no edge is much longer than those of faces no bend is between flat sides.
+    // Most meshes without edges much longer than those of faces are scans.
     const bool may_have_bends = !is_sharpened_ && input_size_.edges.max > 2 * side;
-    Roundings* const roundings = keeps_border_ ? nullptr : &roundings_;
+    Mesh* const roundings = keeps_border_ ? nullptr : &roundings_;
     const bool has_changed =
-        is_sharpened_ || (may_have_bends && sharpen_bends(surface_, options_, side, roundings,
-                                                          plan_.notes, context_));
+        is_sharpened_ || (may_have_bends && sharpen_narrow_bends(surface_, options_, side,
+                                                                 roundings, plan_.notes, context_));
     if (has_changed) input_size_ = surface_size(surface_, context_);
   });
   if (options_.lock_borders) locked_ = rim_vertices(surface_, context_);

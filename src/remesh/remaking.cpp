@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "meshgrain/statistics.h"
+#include "sharpen/round_again.h"
 
 namespace meshgrain {
 
@@ -53,7 +54,7 @@ Made Remaking::made_of(Mesh surface, const RemeshOptions& options, const Made& b
   other.notes = before.notes;
   other.notes.push_back(note);
   report.notes.insert(report.notes.begin(), other.notes.begin(), other.notes.end());
-  other.roundings.add(before.roundings);
+  add_triangles(other.roundings, before.roundings);
   times_.insert(times_.end(), report.stages.begin(), report.stages.end());
   return other;
 }

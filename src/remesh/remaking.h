@@ -11,7 +11,6 @@
 #include "meshgrain/remesh.h"
 #include "remesh/flaws.h"
 #include "remesh/stages.h"
-#include "sharpen/round_again.h"
 
 namespace meshgrain {
 
@@ -24,7 +23,7 @@ struct Made {
   Mesh seamed;                     // the input, if seams may be joined; else empty
   bool has_marks = false;          // besides those of creases that were found
   bool was_marked = false;         // the input
-  Roundings roundings;             // of the input, which are sharp so far
+  Mesh roundings;                  // of the input, which are sharp so far
   Cuts cuts;                       // of the surface that was remeshed
   double room_for_creases = 0;     // those with less were left out (see Pipeline)
   bool follows_creases = false;    // that nobody asked for; only told if faces are inverted

@@ -4,6 +4,7 @@
 
 #include "mesh/part.h"
 #include "sharpen/narrow_bends.h"
+#include "sharpen/round_again.h"
 #include "sharpen/sharpen.h"
 
 namespace meshgrain {
@@ -28,7 +29,9 @@ Mesh with_corners_at(const std::vector<Vec3>& positions, const Mesh& triangles) 
   for (Index f = 0; f < triangles.faces.size(); ++f) {
     if (std::ranges::all_of(triangles.faces[f], is_there)) faces.push_back(f);
   }
-  return part_of(triangles, faces).mesh;
+  auto [mesh, vertices] = part_of(triangles, faces);
+  for (const Index v : vertices) mesh.values.push_back(triangles.values[v]);
+  return mesh;
 }
 
 }  // namespace
@@ -52,8 +55,9 @@ bool sharpen_part(Mesh& triangles, const RemeshOptions& options, double face_sid
   return false;
 }
 
-bool sharpen_bends(Mesh& triangles, const RemeshOptions& options, double face_side,
-                   Roundings* roundings, std::vector<std::string>& notes, const Context& context) {
+bool sharpen_narrow_bends(Mesh& triangles, const RemeshOptions& options, double face_side,
+                          Mesh* roundings, std::vector<std::string>& notes,
+                          const Context& context) {
   if (!may_sharpen(options)) return false;
   constexpr double narrow = 0.5, chamfer = 0.3;  // of a side
   const std::vector<Vec3> positions = triangles.positions;
@@ -70,7 +74,7 @@ bool sharpen_bends(Mesh& triangles, const RemeshOptions& options, double face_si
           "them)");
     } else {
       // Others lead to where a narrower bend was made sharp before.
-      roundings->add({with_corners_at(positions, bent), width * face_side});
+      add_triangles(*roundings, with_corners_at(positions, bent));
     }
   }
   return any;

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "meshgrain/remesh.h"
-#include "sharpen/round_again.h"
 
 namespace meshgrain {
 
@@ -17,7 +16,7 @@ bool sharpen_part(Mesh& triangles, const RemeshOptions& options, double face_sid
 /// Makes sharp creases of bends too narrow for faces to follow, under the same options, and tells
 /// so in `notes`; and of wider ones, so that rows of faces run along them, whose faces are then to
 /// be rounded again: if `roundings` is given, these go there. Returns whether there were any.
-bool sharpen_bends(Mesh& triangles, const RemeshOptions& options, double face_side,
-                   Roundings* roundings, std::vector<std::string>& notes, const Context& context);
+bool sharpen_narrow_bends(Mesh& triangles, const RemeshOptions& options, double face_side,
+                          Mesh* roundings, std::vector<std::string>& notes, const Context& context);
 
 }  // namespace meshgrain

@@ -28,7 +28,7 @@ constexpr double crease = 25 * degree;
 
 using Ends = std::array<Index, 2>;
 
-/// The edges of less than `widest`, each once unless on a border.
+/// The edges of less than `widest`, each once; of those of a border any or none.
 std::vector<Ends> short_edges(const Mesh& triangles, double widest, const Context& context) {
   const auto find = [&](std::size_t begin, std::size_t end, std::vector<Ends>& out) {
     const double most = widest * widest;
@@ -49,7 +49,9 @@ using Corner = VertexMerging::Corner;
 
 /// The angles at which triangles of a bend meet.
 struct Folds {
-  double inner = 0, outer = 0, all = 0;  ///< Most: of two, of one and a side, of two sides.
+  double inner = 0;  ///< The largest between two of its triangles.
+  double outer = 0;  ///< Between one of them and a side.
+  double all = 0;    ///< Between two sides.
 
   /// It bends little by little, and less where it begins. Facets of a cylinder do not.
   bool are_of_rounding() const { return outer < 0.75 * inner && inner < 0.45 * all && all < wall; }
@@ -69,15 +71,16 @@ class NarrowBends {
               const Context& context)
       : positions_(triangles.positions), merging_(triangles, context), widths_(widths) {
     find_places(edges, vertex_normals(triangles, merging_.around(), -1, context));
-    keep_what_may_not_go(context);
-    keep_parts_of_bends();
-    keep_what_may_not_go(context);
+    do {
+      leave_what_may_not_go(context);
+    } while (leave_parts_of_bends());
   }
 
   const VertexMerging& merging() const { return merging_; }
 
-  /// The triangles of those that go; not those in the plane of a side, as beside where one ends.
-  std::vector<Index> bent_faces() const {
+  /// The triangles of those that go, and how far their vertices do; without those in the plane of a
+  /// side, as there are where a bend ends.
+  Mesh bent_triangles(const Mesh& triangles) const {
     std::vector<Index> faces;
     for (const Place& place : merging_.places()) {
       if (!place.may_go) continue;
@@ -87,7 +90,12 @@ class NarrowBends {
       });
     }
     sort_unique(faces);
-    return faces;
+    auto [bent, vertices] = part_of(triangles, faces);
+    bent.origin = triangles.origin;
+    for (const Index v : vertices) {
+      bent.values.push_back((merging_.position_to_be(v) - positions_[v]).norm());
+    }
+    return bent;
   }
 
  private:
@@ -138,20 +146,28 @@ class NarrowBends {
   bool is_narrow(const Place& place, bool is_close) const {
     constexpr std::size_t many = 2000;  // as of details of a scan
     if (place.members.size() > many) return false;
+    double width = 0;
     for (const Index v : place.members) {
-      const auto is_far = [&](Index w) {
-        return (positions_[w] - positions_[v]).norm() > widths_.rounding;
-      };
-      if (std::ranges::any_of(place.members, is_far)) return false;
+      for (const Index w : place.members) {
+        width = std::max<double>(width, (positions_[w] - positions_[v]).norm());
+      }
+      if (width > widths_.rounding) return false;
     }
     const Folds folds = folds_of(place);
-    return folds.are_of_rounding() || (is_close && folds.are_of_chamfer());
+    if (folds.are_of_rounding()) return true;
+    constexpr double across_corners = 1.5;
+    return is_close && width <= across_corners * widths_.chamfer && folds.are_of_chamfer();
   }
 
+  /// Each only once, as sides may be fans of many triangles.
   std::vector<Vec3> side_normals(const Place& place) const {
+    constexpr double equal = 0.5 * degree;
     std::vector<Vec3> normals;
-    merging_.for_each_side(
-        place, [&](const Corner& corner) { normals.push_back(merging_.normal(corner)); });
+    merging_.for_each_side(place, [&](const Corner& corner) {
+      const Vec3 here = merging_.normal(corner);
+      const auto is_equal = [&](const Vec3& n) { return angle(here, n) < equal; };
+      if (std::ranges::none_of(normals, is_equal)) normals.push_back(here);
+    });
     return normals;
   }
 
@@ -238,21 +254,20 @@ class NarrowBends {
     return any;
   }
 
-  void keep_what_may_not_go(const Context& context) {
-    for (bool any = true; std::exchange(any, false);) {
+  void leave_what_may_not_go(const Context& context) {
+    for (bool any = true; any;) {
       context.check();
+      any = merging_.leave_what_ties_knots();
       for (Place& place : merging_.places()) {
-        if (!place.may_go) continue;
-        if (merging_.turns_no_side(place) && makes_crease(place) && merging_.keeps_topology(place))
-          continue;
+        if (!place.may_go || (merging_.turns_no_side(place) && makes_crease(place))) continue;
         place.may_go = false;
         any = true;
       }
     }
   }
 
-  /// Bends go as a whole. What is short, or goes only here and there, is none or too wide.
-  void keep_parts_of_bends() {
+  /// What is short, or goes only here and there, is no bend or too wide. Returns whether any is.
+  bool leave_parts_of_bends() {
     std::vector<Place>& places = merging_.places();
     UnionFind sets(places.size());
     for (Index k = 0; k < places.size(); ++k) {
@@ -274,13 +289,16 @@ class NarrowBends {
       bend.vertices += places[k].members.size();
       if (!places[k].may_go) bend.staying += places[k].members.size();
     }
-    constexpr std::size_t few = 3;  // one of as many
+    constexpr std::size_t at_most_one_of = 3;
     constexpr double longer = 2;
+    bool any = false;
     for (Index k = 0; k < places.size(); ++k) {
       const Bend& bend = bends[sets.find(k)];
       const bool is_long = bend.box.diagonal().norm() > longer * widths_.rounding;
-      if (!is_long || few * bend.staying > bend.vertices) places[k].may_go = false;
+      const bool goes = is_long && at_most_one_of * bend.staying <= bend.vertices;
+      if (!goes && std::exchange(places[k].may_go, false)) any = true;
     }
+    return any;
   }
 
   const std::vector<Vec3>& positions_;
@@ -294,15 +312,14 @@ Mesh sharpen_bends(Mesh& triangles, const BendWidths& widths, const Context& con
   const std::vector<Ends> edges = short_edges(triangles, widths.rounding, context);
   if (edges.empty()) return {};
   const NarrowBends bends(triangles, edges, widths, context);
-  const std::vector<Index> bent_faces = bends.bent_faces();
-  if (bent_faces.empty()) return {};
+  Mesh bent = bends.bent_triangles(triangles);
+  if (bent.faces.empty()) return {};
   Mesh sharp = triangles;
   bends.merging().merge(sharp);
   clean(sharp, context);
   // Of sculptures these are details like any.
   const RimAndSharpEdges sharp_edges = rim_and_sharp_edges(sharp, flat_degrees, context);
   if (kind_of_surface(sharp, sharp_edges, context) == SurfaceKind::sculpture) return {};
-  Mesh bent = part_of(triangles, bent_faces).mesh;
   triangles = std::move(sharp);
   return bent;
 }

@@ -5,16 +5,13 @@
 
 namespace meshgrain {
 
-/// Roundings that were made sharp, to be found again: what sharpen_bends() returned.
-struct Roundings {
-  Mesh triangles;
-  double widest = 0;
-
-  void add(const Roundings& more);
-};
-
 /// Puts those vertices of a mesh that was made where roundings had been sharpened back onto these.
-/// The border stays, and vertices whose faces would be spoilt do.
-void round_again(Mesh& mesh, const Roundings& roundings, const Context& context);
+/// `roundings` are what sharpen_bends() returned, or several such meshes in one. The border stays,
+/// and so do vertices whose faces would be spoilt, and all where more faces than before would pass
+/// through each other.
+void round_again(Mesh& mesh, const Mesh& roundings, const Context& context);
+
+/// The triangles of another mesh, too, with their vertices and `values`.
+void add_triangles(Mesh& roundings, const Mesh& more);
 
 }  // namespace meshgrain

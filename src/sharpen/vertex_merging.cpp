@@ -82,12 +82,28 @@ bool VertexMerging::turns_no_side(const Place& place) const {
   return stay;
 }
 
-bool VertexMerging::keeps_topology(const Place& place) const {
-  const std::vector<Index> near = vertices_of(mesh_, faces_of(around_, place.members));
-  return std::ranges::all_of(near, [&](Index v) {
-    const Place* const other = place_that_goes(v);
-    return other != nullptr ? has_one_ring(other->members) : has_one_ring({&v, 1});
-  });
+bool VertexMerging::leave_what_ties_knots() {
+  std::vector<Index> near;
+  for (const Place& place : places_) {
+    if (!place.may_go) continue;
+    for_each_corner(place.members, [&](const Corner& corner) {
+      near.insert(near.end(), {into(corner.member), into(corner.from), into(corner.to)});
+    });
+  }
+  sort_unique(near);
+  std::vector<Index> knots;
+  for (const Index v : near) {
+    const Place* const place = place_that_goes(v);
+    const std::span<const Index> members = place != nullptr ? place->members : std::span(&v, 1);
+    if (has_one_ring(members)) continue;
+    for_each_corner(members, [&](const Corner& corner) {
+      knots.insert(knots.end(), {corner.member, corner.from, corner.to});
+    });
+  }
+  for (const Index v : knots) {
+    if (place_of_[v] != no_index) places_[place_of_[v]].may_go = false;
+  }
+  return !knots.empty();
 }
 
 /// Whether what is opposite to vertices that are one will be a ring, or a path on the rim.

@@ -43,7 +43,6 @@ class VertexMerging {
     return std::ranges::binary_search(place.members, v);
   }
 
-  const Mesh& mesh() const { return mesh_; }
   const VertexFaces& around() const { return around_; }
   bool is_on_rim(Index v) const { return on_rim_[v] != 0; }
   Vec3 normal(const Corner& corner) const;
@@ -89,8 +88,8 @@ class VertexMerging {
 
   /// Whether its own edges and triangles make up a disk, or a path.
   bool is_disk(const Place& place) const;
-  /// Whether the mesh around it will be manifold as it is now.
-  bool keeps_topology(const Place& place) const;
+  /// Places stay around which the mesh would not be manifold as it is now. Returns whether any do.
+  bool leave_what_ties_knots();
   /// Whether sides will look where they do, and what leads from them to places that stay nearly.
   bool turns_no_side(const Place& place) const;
 
