@@ -3,7 +3,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <numbers>
 #include <span>
@@ -17,7 +19,6 @@
 #include "meshgrain/clean.h"
 #include "sharpen/vertex_merging.h"
 #include "util/collect.h"
-#include "util/sort_unique.h"
 #include "util/union_find.h"
 
 namespace meshgrain {
@@ -70,26 +71,35 @@ class NarrowBends {
   NarrowBends(const Mesh& triangles, std::span<const Ends> edges, const BendWidths& widths,
               const Context& context)
       : positions_(triangles.positions), merging_(triangles, context), widths_(widths) {
-    find_places(edges, vertex_normals(triangles, merging_.around(), -1, context));
+    find_places(edges, vertex_normals(triangles, merging_.around(), -1, context), context);
     do {
       leave_what_may_not_go(context);
     } while (leave_parts_of_bends());
   }
 
+  static constexpr std::size_t grain = 16;  // places that are looked at by one thread
+
   const VertexMerging& merging() const { return merging_; }
 
   /// The triangles of those that go, and how far their vertices do; without those in the plane of a
   /// side, as there are where a bend ends.
-  Mesh bent_triangles(const Mesh& triangles) const {
+  Mesh bent_triangles(const Mesh& triangles, const Context& context) const {
+    std::vector<std::uint8_t> is_face_bent(triangles.faces.size(), 0);
+    context.for_ranges(merging_.places().size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        const Place& place = merging_.places()[k];
+        if (!place.may_go) continue;
+        const Sides sides = sides_of(place);
+        merging_.for_each_corner(place.members, [&](const Corner& corner) {
+          if (!is_bent(corner, sides)) return;
+          std::atomic_ref(is_face_bent[corner.face]).store(1, std::memory_order_relaxed);
+        });
+      }
+    });
     std::vector<Index> faces;
-    for (const Place& place : merging_.places()) {
-      if (!place.may_go) continue;
-      const std::vector<Vec3> sides = side_normals(place);
-      merging_.for_each_corner(place.members, [&](const Corner& corner) {
-        if (is_bent(corner, sides)) faces.push_back(corner.face);
-      });
+    for (Index f = 0; f < is_face_bent.size(); ++f) {
+      if (is_face_bent[f]) faces.push_back(f);
     }
-    sort_unique(faces);
     auto [bent, vertices] = part_of(triangles, faces);
     bent.origin = triangles.origin;
     for (const Index v : vertices) {
@@ -101,7 +111,8 @@ class NarrowBends {
  private:
   /// Those that edges join along which normals turn as fast as on a bend that narrow, and not much
   /// faster along others from there: a bend along a curve turns that way, too.
-  void find_places(std::span<const Ends> edges, const std::vector<Vec3>& normals) {
+  void find_places(std::span<const Ends> edges, const std::vector<Vec3>& normals,
+                   const Context& context) {
     constexpr double bend = 45 * degree, much_faster = 1.5;
     std::vector<double> turns;  // over the width of a narrow bend
     std::vector<double> most(positions_.size(), bend);
@@ -115,31 +126,37 @@ class NarrowBends {
       for (const Index v : {a, b}) most[v] = std::max(most[v], turns.back());
     }
     UnionFind sets(positions_.size()), close_sets(positions_.size());
-    std::vector<Index> joined;
+    std::vector<std::uint8_t> is_joined(positions_.size(), 0);
     for (std::size_t e = 0; e < edges.size(); ++e) {
       const auto& [a, b] = edges[e];
       const double least = std::max(bend, std::min(most[a], most[b]) / much_faster);
       if (merging_.is_on_rim(a) || merging_.is_on_rim(b) || turns[e] < least) continue;
       sets.unite(a, b);
       if ((positions_[b] - positions_[a]).norm() <= widths_.chamfer) close_sets.unite(a, b);
-      joined.insert(joined.end(), {a, b});
+      is_joined[a] = is_joined[b] = 1;
     }
-    sort_unique(joined);
+    std::vector<std::vector<Index>> places;
     std::vector<std::uint8_t> are_close;  // each joined by edges as short as narrow chamfers
-    std::ranges::stable_sort(joined, {}, [&](Index v) { return sets.find(v); });
-    for (auto it = joined.begin(); it != joined.end();) {
-      const auto is_of_another = [&](Index v) { return sets.find(v) != sets.find(*it); };
-      const auto end = std::find_if(it, joined.end(), is_of_another);
-      const auto is_apart = [&](Index v) { return close_sets.find(v) != close_sets.find(*it); };
-      are_close.push_back(std::none_of(it, end, is_apart));
-      merging_.add_place({it, end});
-      it = end;
+    std::vector<Index> place_of(positions_.size(), no_index);
+    for (Index v = 0; v < positions_.size(); ++v) {
+      if (!is_joined[v]) continue;
+      const Index root = sets.find(v);  // the lowest
+      if (root == v) {
+        place_of[v] = static_cast<Index>(places.size());
+        places.emplace_back();
+        are_close.push_back(1);
+      }
+      places[place_of[root]].push_back(v);
+      if (close_sets.find(v) != close_sets.find(root)) are_close[place_of[root]] = 0;
     }
-    std::vector<Place>& places = merging_.places();
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      places[k].may_go = is_narrow(places[k], are_close[k]) && merging_.is_disk(places[k]) &&
-                         find_meeting_point(places[k]);
-    }
+    for (std::vector<Index>& members : places) merging_.add_place(std::move(members));
+    context.for_ranges(places.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        Place& place = merging_.places()[k];
+        place.may_go =
+            is_narrow(place, are_close[k]) && merging_.is_disk(place) && find_meeting_point(place);
+      }
+    });
   }
 
   /// `is_close`: whether edges of the width of narrow chamfers join its members.
@@ -161,7 +178,7 @@ class NarrowBends {
 
   /// Each only once, as sides may be fans of many triangles.
   std::vector<Vec3> side_normals(const Place& place) const {
-    constexpr double equal = 0.5 * degree;
+    constexpr double equal = 0.1 * degree;
     std::vector<Vec3> normals;
     merging_.for_each_side(place, [&](const Corner& corner) {
       const Vec3 here = merging_.normal(corner);
@@ -175,15 +192,32 @@ class NarrowBends {
     return std::acos(std::clamp(m.dot(n), -1.0f, 1.0f));
   }
 
+  /// What may tell whether a triangle is in the plane of a side.
+  struct Sides {
+    std::vector<Vec3> normals;
+    double in_plane = 3 * degree;
+  };
+
+  Sides sides_of(const Place& place) const {
+    Sides sides{.normals = side_normals(place)};
+    // The first strip of a rounding of many is nearly in that plane.
+    constexpr double none = 0.1 * degree, least = 0.2 * degree;
+    merging_.for_each_fold(place, [&](const Corner& corner, const Corner& after) {
+      const double fold = angle(merging_.normal(corner), merging_.normal(after));
+      if (fold > none) sides.in_plane = std::min(sides.in_plane, std::max(least, fold / 2));
+    });
+    return sides;
+  }
+
   /// Whether a triangle is in the plane of none of the sides.
-  bool is_bent(const Corner& corner, std::span<const Vec3> sides) const {
-    constexpr double in_plane = 3 * degree;
+  bool is_bent(const Corner& corner, const Sides& sides) const {
     const Vec3 here = merging_.normal(corner);
-    return std::ranges::none_of(sides, [&](const Vec3& n) { return angle(here, n) < in_plane; });
+    return std::ranges::none_of(sides.normals,
+                                [&](const Vec3& n) { return angle(here, n) < sides.in_plane; });
   }
 
   Folds folds_of(const Place& place) const {
-    const std::vector<Vec3> sides = side_normals(place);
+    const Sides sides = sides_of(place);
     Folds folds;
     merging_.for_each_fold(place, [&](const Corner& corner, const Corner& after) {
       const int bent = is_bent(corner, sides) + is_bent(after, sides);
@@ -191,8 +225,8 @@ class NarrowBends {
       double& most = bent == 2 ? folds.inner : folds.outer;
       most = std::max(most, angle(merging_.normal(corner), merging_.normal(after)));
     });
-    for (const Vec3& m : sides) {
-      for (const Vec3& n : sides) folds.all = std::max(folds.all, angle(m, n));
+    for (const Vec3& m : sides.normals) {
+      for (const Vec3& n : sides.normals) folds.all = std::max(folds.all, angle(m, n));
     }
     return folds;
   }
@@ -312,7 +346,7 @@ Mesh sharpen_bends(Mesh& triangles, const BendWidths& widths, const Context& con
   const std::vector<Ends> edges = short_edges(triangles, widths.rounding, context);
   if (edges.empty()) return {};
   const NarrowBends bends(triangles, edges, widths, context);
-  Mesh bent = bends.bent_triangles(triangles);
+  Mesh bent = bends.bent_triangles(triangles, context);
   if (bent.faces.empty()) return {};
   Mesh sharp = triangles;
   bends.merging().merge(sharp);

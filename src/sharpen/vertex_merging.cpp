@@ -83,18 +83,19 @@ bool VertexMerging::turns_no_side(const Place& place) const {
 }
 
 bool VertexMerging::leave_what_ties_knots() {
-  std::vector<Index> near;
+  std::vector<std::uint8_t> is_near(mesh_.positions.size(), 0);
   for (const Place& place : places_) {
     if (!place.may_go) continue;
     for_each_corner(place.members, [&](const Corner& corner) {
-      near.insert(near.end(), {into(corner.member), into(corner.from), into(corner.to)});
+      for (const Index v : {corner.member, corner.from, corner.to}) is_near[into(v)] = 1;
     });
   }
-  sort_unique(near);
   std::vector<Index> knots;
-  for (const Index v : near) {
+  for (Index v = 0; v < is_near.size(); ++v) {
+    if (!is_near[v]) continue;
     const Place* const place = place_that_goes(v);
-    const std::span<const Index> members = place != nullptr ? place->members : std::span(&v, 1);
+    const std::span<const Index> members =
+        place != nullptr ? std::span<const Index>(place->members) : std::span<const Index>(&v, 1);
     if (has_one_ring(members)) continue;
     for_each_corner(members, [&](const Corner& corner) {
       knots.insert(knots.end(), {corner.member, corner.from, corner.to});
