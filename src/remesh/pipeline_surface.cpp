@@ -119,8 +119,11 @@ void Pipeline::sharpen() {
     input_size_ = surface_size(surface_, context_);
     const double side = plan_.target.face_side(input_size_.area);
     is_sharpened_ = sharpen_part(surface_, options_, side, plan_.notes, context_);
-    // Most meshes without edges much longer than those of faces are scans.
-    const bool may_have_bends = !is_sharpened_ && input_size_.edges.max > 2 * side;
+    // Most meshes without edges much longer than those of faces are scans, and so are very large
+    // ones, of which all edges and copies would take much memory.
+    constexpr std::size_t most = 1 << 20;  // vertices
+    const bool may_have_bends =
+        !is_sharpened_ && input_size_.edges.max > 2 * side && surface_.positions.size() <= most;
     Mesh* const roundings = keeps_border_ ? nullptr : &roundings_;
     const bool has_changed =
         is_sharpened_ || (may_have_bends && sharpen_narrow_bends(surface_, options_, side,

@@ -1,6 +1,6 @@
 #include "sharpen/narrow_bends.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -17,6 +17,7 @@
 #include "mesh/part.h"
 #include "mesh/vertex_normals.h"
 #include "meshgrain/clean.h"
+#include "sharpen/meet.h"
 #include "sharpen/vertex_merging.h"
 #include "util/collect.h"
 #include "util/union_find.h"
@@ -233,42 +234,28 @@ class NarrowBends {
 
   /// Of the planes of its sides, each of which counts as much as it is large.
   bool find_meeting_point(Place& place) const {
-    struct Side {
-      Eigen::Vector3d normal;
-      double height, area;
-    };
     Eigen::AlignedBox3d box;
-    for (const Index v : place.members) box.extend(positions_[v].cast<double>());
-    const Eigen::Vector3d middle = box.center();
-    const auto position = [&](Index v) -> Eigen::Vector3d {
-      return positions_[v].cast<double>() - middle;
-    };
-    std::vector<Side> sides;
+    for (const Index v : place.members) box.extend(position(v));
+    std::vector<Plane> planes;
     double area = 0;
     merging_.for_each_side(place, [&](const Corner& corner) {
       const Eigen::Vector3d p = position(corner.member);
       const Eigen::Vector3d n = (position(corner.from) - p).cross(position(corner.to) - p);
       if (!(n.norm() > 0)) return;
-      sides.push_back({n.normalized(), n.normalized().dot(p), n.norm()});
+      planes.push_back({n / std::sqrt(n.norm()), p});
       area += n.norm();
     });
-    constexpr double hardly = 1e-8;  // held where it is along what the sides leave open
-    Eigen::Matrix3d matrix = hardly * Eigen::Matrix3d::Identity();
-    Eigen::Vector3d right = Eigen::Vector3d::Zero();
-    for (const Side& side : sides) {
-      matrix += side.area / area * side.normal * side.normal.transpose();
-      right += side.area / area * side.height * side.normal;
-    }
-    const Eigen::Vector3d way = matrix.ldlt().solve(right);
+    for (Plane& plane : planes) plane.normal /= std::sqrt(area);
+    const Eigen::Vector3d at = meet(box.center(), planes, 1e-8);
     double off = 0;
-    for (const Side& side : sides) {
-      off += side.area / area * std::pow(side.normal.dot(way) - side.height, 2);
-    }
-    place.at = (middle + way).cast<float>();
+    for (const Plane& plane : planes) off += std::pow(plane.height(at), 2);
+    place.at = at.cast<float>();
     constexpr double far = 1.5, hardly_off = 0.1;
     const double width = box.diagonal().norm();
-    return way.norm() < far * width && std::sqrt(off) < hardly_off * width;
+    return (at - box.center()).norm() < far * width && std::sqrt(off) < hardly_off * width;
   }
+
+  Eigen::Vector3d position(Index v) const { return positions_[v].cast<double>(); }
 
   /// Whether sides meet in one that have not met so far.
   bool makes_crease(const Place& place) const {

@@ -13,8 +13,8 @@ struct BendWidths {
 
 /// Makes sharp creases of the narrow chamfers and roundings of a mechanical part: what lies across
 /// one becomes a vertex where the sides beyond it meet. Topology and border stay, and so does what
-/// cannot go without turning the sides. Returns the triangles that were bent, as
-/// they were, with how far each of their vertices went as `values`.
+/// cannot go without turning the sides. Returns the triangles that were bent, as they were, with
+/// how far each of their vertices went as `values`.
 Mesh sharpen_bends(Mesh& triangles, const BendWidths& widths, const Context& context);
 
 }  // namespace meshgrain

@@ -114,7 +114,6 @@ void take_back_poor(Mesh& mesh, const std::vector<Vec3>& sharp, const Context& c
 void round_again(Mesh& mesh, const Mesh& roundings, const Context& context) {
   if (roundings.faces.empty()) return;
   const std::vector<Vec3> sharp = mesh.positions;
-  const std::size_t crossings = find_crossings(mesh, context).size();
   const std::vector<Vec3> normals = vertex_normals(mesh, -1, context);
   const std::vector<std::uint8_t> on_rim = rim_vertices(mesh, context);
   const Eigen::Vector3d offset = mesh.origin - roundings.origin;
@@ -129,7 +128,10 @@ void round_again(Mesh& mesh, const Mesh& roundings, const Context& context) {
   };
   context.for_ranges(sharp.size(), 1024, put);
   take_back_poor(mesh, sharp, context);
-  if (find_crossings(mesh, context).size() > crossings) mesh.positions = sharp;
+  const std::size_t crossings = find_crossings(mesh, context).size();
+  if (crossings == 0) return;
+  std::vector<Vec3> round = std::exchange(mesh.positions, sharp);
+  if (find_crossings(mesh, context).size() >= crossings) mesh.positions = std::move(round);
 }
 
 void add_triangles(Mesh& roundings, const Mesh& more) {
